@@ -1,0 +1,213 @@
+//! How a scene is run: formulation, time, integrator, and what is recorded.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+use crate::scene_component::FieldReport;
+
+/// The `run` block of a scene.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct RunSpec {
+    /// Which equations move the tethers.
+    #[serde(default)]
+    pub formulation: Formulation,
+    /// Simulated time, s.
+    pub duration_s: f64,
+    /// Time between outputs, s; output k stands at k times this.
+    pub output_every_s: f64,
+    /// The integrator and its accuracy.
+    #[serde(default)]
+    pub integrator: IntegratorSpec,
+    /// Seed of every random draw.
+    #[serde(default)]
+    pub seed: u64,
+    /// What is recorded, and how often.
+    #[serde(default)]
+    pub record: RecordSpec,
+}
+
+impl RunSpec {
+    /// Reports what is wrong with the fields.
+    pub fn check(&self, report: &mut FieldReport) {
+        report.positive("duration_s", self.duration_s);
+        report.positive("output_every_s", self.output_every_s);
+        if self.duration_s / self.output_every_s > MOST_OUTPUTS {
+            report.add(
+                "output_every_s",
+                format!(
+                    "{} s in steps of {} s are more than {MOST_OUTPUTS:e} outputs",
+                    self.duration_s, self.output_every_s
+                ),
+                "",
+            );
+        }
+        report.within("integrator", |report| self.integrator.check(report));
+        report.within("record", |report| self.record.check(report));
+    }
+}
+
+/// More outputs than this in one run are a slip of the pen.
+const MOST_OUTPUTS: f64 = 1e9;
+
+/// The equations that move tethers.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+pub enum Formulation {
+    /// Point masses joined by Kelvin-Voigt segments.
+    #[default]
+    LumpedMass,
+    /// Chains of rigid links in recursive form.
+    Denoc,
+}
+
+impl Formulation {
+    /// The name in files and on the command line.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::LumpedMass => "lumped-mass",
+            Self::Denoc => "denoc",
+        }
+    }
+}
+
+/// The integrator and its accuracy.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum IntegratorSpec {
+    /// Dormand-Prince 5(4) with step control.
+    Adaptive {
+        /// Largest error of a step, relative to 1 m, 1 m/s, 1 rad, 1 rad/s, or to the displacement
+        /// from the start where that is more.
+        #[serde(default = "IntegratorSpec::relative_tolerance")]
+        relative_tolerance: f64,
+        /// Longest step, s; without limit unless given.
+        #[serde(default)]
+        longest_step_s: Option<f64>,
+    },
+    /// Classical Runge-Kutta of fourth order with a fixed step.
+    Fixed {
+        /// The step, s; a safe fraction of the largest stable one unless given.
+        #[serde(default)]
+        step_s: Option<f64>,
+    },
+}
+
+impl Default for IntegratorSpec {
+    fn default() -> Self {
+        Self::Adaptive { relative_tolerance: Self::relative_tolerance(), longest_step_s: None }
+    }
+}
+
+impl IntegratorSpec {
+    fn relative_tolerance() -> f64 {
+        1e-8
+    }
+
+    fn check(&self, report: &mut FieldReport) {
+        match *self {
+            Self::Adaptive { relative_tolerance, longest_step_s } => {
+                if !(relative_tolerance > 1e-15 && relative_tolerance < 1.0) {
+                    report.add(
+                        "relative_tolerance",
+                        format!(
+                            "`relative_tolerance` must lie between 1e-15 and 1, it is \
+                             {relative_tolerance}"
+                        ),
+                        "",
+                    );
+                }
+                if let Some(longest_step_s) = longest_step_s {
+                    report.positive("longest_step_s", longest_step_s);
+                }
+            }
+            Self::Fixed { step_s } => {
+                if let Some(step_s) = step_s {
+                    report.positive("step_s", step_s);
+                }
+            }
+        }
+    }
+}
+
+/// What is recorded, and how often.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct RecordSpec {
+    /// Bodies and anchors in `states.csv`.
+    #[serde(default)]
+    pub bodies: Cadence,
+    /// Nodes of tethers in `states.csv`.
+    #[serde(default)]
+    pub nodes: Cadence,
+    /// Segments in `tethers.csv`.
+    #[serde(default)]
+    pub tethers: Cadence,
+    /// Built-in channels in `channels.csv`: which ones.
+    #[serde(default)]
+    pub channels: ChannelSelection,
+    /// Built-in channels: how often. Instruments have a period of their own.
+    #[serde(default)]
+    pub channels_at: Cadence,
+    /// Channels of instruments and controllers.
+    #[serde(default)]
+    pub instruments: InstrumentSelection,
+}
+
+impl RecordSpec {
+    fn check(&self, report: &mut FieldReport) {
+        for (field, cadence) in [
+            ("bodies", self.bodies),
+            ("nodes", self.nodes),
+            ("tethers", self.tethers),
+            ("channels_at", self.channels_at),
+        ] {
+            if let Cadence::Every { period_s } = cadence {
+                report.positive(&format!("{field}.period_s"), period_s);
+            }
+        }
+    }
+}
+
+/// How often something is recorded.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum Cadence {
+    /// At every output time.
+    #[default]
+    Output,
+    /// At the multiples of a period of its own, and at the end.
+    Every {
+        /// The period, s.
+        period_s: f64,
+    },
+    /// Never.
+    Never,
+}
+
+/// Which built-in channels are recorded.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+pub enum ChannelSelection {
+    /// Airspeed, tilt, heading, swing and attachment tensions of everything that has them.
+    #[default]
+    Standard,
+    /// These and the energy of the whole system with the work of non-conservative forces.
+    All,
+    /// None.
+    None,
+    /// These: for each entity the names of its channels; the whole system is `"system"`.
+    Only(BTreeMap<String, Vec<String>>),
+}
+
+/// Whether the channels of instruments and controllers are recorded.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+pub enum InstrumentSelection {
+    /// All of them.
+    #[default]
+    All,
+    /// None.
+    None,
+    /// Those of these entities.
+    Only(Vec<String>),
+}
