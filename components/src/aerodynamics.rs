@@ -145,7 +145,11 @@ impl SceneComponent for Drag {
     const REQUIRES: &'static [&'static [&'static str]] = &[&["Body", "Fixed", "Moving"]];
 
     fn check(&self, report: &mut FieldReport) {
-        if let Self::Constant { coefficient, area_m2 } = self {
+        if let Self::Constant {
+            coefficient,
+            area_m2,
+        } = self
+        {
             report.non_negative("coefficient", *coefficient);
             if let Some(area_m2) = area_m2 {
                 report.non_negative("area_m2", *area_m2);

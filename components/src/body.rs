@@ -86,7 +86,11 @@ impl AttitudeSpec {
             Self::AxisAngle { axis, angle_rad } => {
                 DQuat::from_axis_angle(axis.normalize(), angle_rad)
             }
-            Self::YawPitchRoll { yaw_rad, pitch_rad, roll_rad } => {
+            Self::YawPitchRoll {
+                yaw_rad,
+                pitch_rad,
+                roll_rad,
+            } => {
                 DQuat::from_rotation_z(yaw_rad)
                     * DQuat::from_rotation_y(pitch_rad)
                     * DQuat::from_rotation_x(roll_rad)
@@ -114,7 +118,11 @@ impl AttitudeSpec {
                     report.add("axis", "an axis must be finite and not zero", "");
                 }
             }
-            Self::YawPitchRoll { yaw_rad, pitch_rad, roll_rad } => {
+            Self::YawPitchRoll {
+                yaw_rad,
+                pitch_rad,
+                roll_rad,
+            } => {
                 report.finite("yaw_rad", yaw_rad);
                 report.finite("pitch_rad", pitch_rad);
                 report.finite("roll_rad", roll_rad);

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use crate::scene_component::FieldReport;
 
 /// Gravity, air and wind of a scene.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Environment {
     /// Gravity; Venus' 8.87 m/s^2, constant, unless said.
@@ -18,16 +18,6 @@ pub struct Environment {
     /// The wind: the sum of these; still air where there is none.
     #[serde(default)]
     pub wind: Vec<WindSpec>,
-}
-
-impl Default for Environment {
-    fn default() -> Self {
-        Self {
-            gravity: Gravity::default(),
-            atmosphere: AtmosphereSpec::default(),
-            wind: Vec::new(),
-        }
-    }
 }
 
 impl Environment {
@@ -74,7 +64,10 @@ impl Gravity {
     pub fn acceleration_m_s2(&self, altitude_m: f64) -> f64 {
         match *self {
             Self::Constant(acceleration) => acceleration,
-            Self::InverseSquare { surface_m_s2, radius_m } => {
+            Self::InverseSquare {
+                surface_m_s2,
+                radius_m,
+            } => {
                 let ratio = radius_m / (radius_m + altitude_m);
                 surface_m_s2 * ratio * ratio
             }
@@ -86,16 +79,20 @@ impl Gravity {
     pub fn potential_j_kg(&self, altitude_m: f64) -> f64 {
         match *self {
             Self::Constant(acceleration) => acceleration * altitude_m,
-            Self::InverseSquare { surface_m_s2, radius_m } => {
-                surface_m_s2 * radius_m * altitude_m / (radius_m + altitude_m)
-            }
+            Self::InverseSquare {
+                surface_m_s2,
+                radius_m,
+            } => surface_m_s2 * radius_m * altitude_m / (radius_m + altitude_m),
         }
     }
 
     fn check(&self, report: &mut FieldReport) {
         match *self {
             Self::Constant(acceleration) => report.non_negative("0", acceleration),
-            Self::InverseSquare { surface_m_s2, radius_m } => {
+            Self::InverseSquare {
+                surface_m_s2,
+                radius_m,
+            } => {
                 report.non_negative("surface_m_s2", surface_m_s2);
                 report.positive("radius_m", radius_m);
             }
@@ -164,14 +161,22 @@ pub enum GasSpec {
 impl AtmosphereSpec {
     fn check(&self, report: &mut FieldReport) {
         match self {
-            Self::Uniform { density_kg_m3, temperature_k, .. } => {
+            Self::Uniform {
+                density_kg_m3,
+                temperature_k,
+                ..
+            } => {
                 report.non_negative("density_kg_m3", *density_kg_m3);
                 if let Some(temperature_k) = temperature_k {
                     report.positive("temperature_k", *temperature_k);
                 }
             }
             Self::Exponential {
-                density_kg_m3, altitude_m, scale_height_m, temperature_k, ..
+                density_kg_m3,
+                altitude_m,
+                scale_height_m,
+                temperature_k,
+                ..
             } => {
                 report.non_negative("density_kg_m3", *density_kg_m3);
                 report.finite("altitude_m", *altitude_m);
@@ -231,7 +236,11 @@ impl WindSpec {
     fn check(&self, report: &mut FieldReport) {
         match self {
             Self::Uniform { velocity_m_s } => report.finite_vector("velocity_m_s", *velocity_m_s),
-            Self::Shear { altitude_m, gradient_per_s, direction } => {
+            Self::Shear {
+                altitude_m,
+                gradient_per_s,
+                direction,
+            } => {
                 report.finite("altitude_m", *altitude_m);
                 report.finite("gradient_per_s", *gradient_per_s);
                 report.finite_vector("direction", *direction);
@@ -239,14 +248,20 @@ impl WindSpec {
                     report.add("direction", "`direction` must have length 1", "");
                 }
             }
-            Self::Step { velocity_m_s, from_s, until_s } => {
+            Self::Step {
+                velocity_m_s,
+                from_s,
+                until_s,
+            } => {
                 report.finite_vector("velocity_m_s", *velocity_m_s);
                 report.finite("from_s", *from_s);
                 report.finite("until_s", *until_s);
                 if until_s <= from_s {
                     report.add(
                         "until_s",
-                        format!("a gust must end after it begins: {until_s} s is not after {from_s} s"),
+                        format!(
+                            "a gust must end after it begins: {until_s} s is not after {from_s} s"
+                        ),
                         "",
                     );
                 }
@@ -262,13 +277,19 @@ mod tests {
 
     #[test]
     fn the_potential_is_the_integral_of_gravity() {
-        let gravity = Gravity::InverseSquare { surface_m_s2: 8.87, radius_m: 6_051_800.0 };
+        let gravity = Gravity::InverseSquare {
+            surface_m_s2: 8.87,
+            radius_m: 6_051_800.0,
+        };
         let (low, high, count) = (50_000.0, 60_000.0, 1000);
         let step = (high - low) / f64::from(count);
         let work: f64 = (0..count)
             .map(|k| gravity.acceleration_m_s2(low + (f64::from(k) + 0.5) * step) * step)
             .sum();
         let difference = gravity.potential_j_kg(high) - gravity.potential_j_kg(low);
-        assert!((work - difference).abs() < 1e-8 * difference, "{work} {difference}");
+        assert!(
+            (work - difference).abs() < 1e-8 * difference,
+            "{work} {difference}"
+        );
     }
 }

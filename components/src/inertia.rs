@@ -75,16 +75,27 @@ impl InertiaShape {
             Self::SolidSphere => DVec3::splat(0.4 * m * sphere_radius_m * sphere_radius_m),
             Self::ThinSphere => DVec3::splat(2.0 / 3.0 * m * sphere_radius_m * sphere_radius_m),
             Self::SolidCylinder { radius_m, height_m } => cylinder(m, radius_m, 0.0, height_m),
-            Self::HollowCylinder { outer_radius_m, inner_radius_m, height_m } => {
-                cylinder(m, outer_radius_m, inner_radius_m, height_m)
+            Self::HollowCylinder {
+                outer_radius_m,
+                inner_radius_m,
+                height_m,
+            } => cylinder(m, outer_radius_m, inner_radius_m, height_m),
+            Self::Box(a, b, c) => {
+                m / 12.0 * DVec3::new(b * b + c * c, a * a + c * c, a * a + b * b)
             }
-            Self::Box(a, b, c) => m / 12.0 * DVec3::new(b * b + c * c, a * a + c * c, a * a + b * b),
             Self::Rod { length_m } => {
                 let across = m * length_m * length_m / 12.0;
                 // A rod has no inertia about itself; the trace of it keeps the tensor invertible.
                 DVec3::new(across, across, 1e-6 * across)
             }
-            Self::Tensor { xx_kg_m2, yy_kg_m2, zz_kg_m2, xy_kg_m2, xz_kg_m2, yz_kg_m2 } => {
+            Self::Tensor {
+                xx_kg_m2,
+                yy_kg_m2,
+                zz_kg_m2,
+                xy_kg_m2,
+                xz_kg_m2,
+                yz_kg_m2,
+            } => {
                 return Some(DMat3::from_cols(
                     DVec3::new(xx_kg_m2, xy_kg_m2, xz_kg_m2),
                     DVec3::new(xy_kg_m2, yy_kg_m2, yz_kg_m2),
@@ -121,7 +132,11 @@ impl InertiaShape {
                 report.positive("radius_m", radius_m);
                 report.positive("height_m", height_m);
             }
-            Self::HollowCylinder { outer_radius_m, inner_radius_m, height_m } => {
+            Self::HollowCylinder {
+                outer_radius_m,
+                inner_radius_m,
+                height_m,
+            } => {
                 report.positive("outer_radius_m", outer_radius_m);
                 report.non_negative("inner_radius_m", inner_radius_m);
                 report.positive("height_m", height_m);
@@ -139,7 +154,11 @@ impl InertiaShape {
             Self::Box(a, b, c) => {
                 for (index, edge) in ["0", "1", "2"].into_iter().zip([a, b, c]) {
                     if !(edge.is_finite() && edge > 0.0) {
-                        report.add(index, format!("an edge must be above zero, it is {edge}"), "");
+                        report.add(
+                            index,
+                            format!("an edge must be above zero, it is {edge}"),
+                            "",
+                        );
                     }
                 }
             }
@@ -153,7 +172,9 @@ impl InertiaShape {
     /// inequality: both hold if and only if tr(J)/2 I - J (the second moments of the mass) is
     /// positive semi-definite and J itself is positive definite.
     fn check_tensor(&self, report: &mut FieldReport) {
-        let Some(tensor) = self.tensor(1.0, 1.0) else { return };
+        let Some(tensor) = self.tensor(1.0, 1.0) else {
+            return;
+        };
         if !tensor.is_finite() {
             report.add("", "the tensor must consist of finite numbers", "");
             return;
@@ -205,7 +226,10 @@ mod tests {
 
     #[test]
     fn shapes_agree_where_they_meet() {
-        let solid = InertiaShape::SolidCylinder { radius_m: 0.7, height_m: 1.3 };
+        let solid = InertiaShape::SolidCylinder {
+            radius_m: 0.7,
+            height_m: 1.3,
+        };
         let hollow = InertiaShape::HollowCylinder {
             outer_radius_m: 0.7,
             inner_radius_m: 0.0,
@@ -226,9 +250,11 @@ mod tests {
             xz_kg_m2: 0.0,
             yz_kg_m2: 0.0,
         };
-        for (shape, problems) in
-            [(tensor(1.0, 2.0, 2.5), 0), (tensor(1.0, 1.0, 2.5), 1), (tensor(-1.0, 1.0, 1.0), 1)]
-        {
+        for (shape, problems) in [
+            (tensor(1.0, 2.0, 2.5), 0),
+            (tensor(1.0, 1.0, 2.5), 1),
+            (tensor(-1.0, 1.0, 1.0), 1),
+        ] {
             let mut report = FieldReport::new("");
             shape.check(&mut report);
             assert_eq!(report.into_violations().len(), problems, "{shape:?}");

@@ -96,7 +96,10 @@ pub enum IntegratorSpec {
 
 impl Default for IntegratorSpec {
     fn default() -> Self {
-        Self::Adaptive { relative_tolerance: Self::relative_tolerance(), longest_step_s: None }
+        Self::Adaptive {
+            relative_tolerance: Self::relative_tolerance(),
+            longest_step_s: None,
+        }
     }
 }
 
@@ -107,7 +110,10 @@ impl IntegratorSpec {
 
     fn check(&self, report: &mut FieldReport) {
         match *self {
-            Self::Adaptive { relative_tolerance, longest_step_s } => {
+            Self::Adaptive {
+                relative_tolerance,
+                longest_step_s,
+            } => {
                 if !(relative_tolerance > 1e-15 && relative_tolerance < 1.0) {
                     report.add(
                         "relative_tolerance",

@@ -44,7 +44,10 @@ impl FieldReport {
     /// A report whose fields stand under the path `base` (empty for the root of the scene).
     #[must_use]
     pub fn new(base: impl Into<String>) -> Self {
-        Self { base: base.into(), violations: Vec::new() }
+        Self {
+            base: base.into(),
+            violations: Vec::new(),
+        }
     }
 
     /// Everything reported so far.
@@ -74,21 +77,33 @@ impl FieldReport {
     /// `value` must be finite and above zero.
     pub fn positive(&mut self, field: &str, value: f64) {
         if !(value.is_finite() && value > 0.0) {
-            self.add(field, format!("`{}` must be above zero, it is {value}", last(field)), "");
+            self.add(
+                field,
+                format!("`{}` must be above zero, it is {value}", last(field)),
+                "",
+            );
         }
     }
 
     /// `value` must be finite and not below zero.
     pub fn non_negative(&mut self, field: &str, value: f64) {
         if !(value.is_finite() && value >= 0.0) {
-            self.add(field, format!("`{}` must not be negative, it is {value}", last(field)), "");
+            self.add(
+                field,
+                format!("`{}` must not be negative, it is {value}", last(field)),
+                "",
+            );
         }
     }
 
     /// `value` must be a finite number.
     pub fn finite(&mut self, field: &str, value: f64) {
         if !value.is_finite() {
-            self.add(field, format!("`{}` must be a finite number, it is {value}", last(field)), "");
+            self.add(
+                field,
+                format!("`{}` must be a finite number, it is {value}", last(field)),
+                "",
+            );
         }
     }
 
@@ -97,7 +112,10 @@ impl FieldReport {
         if !value.is_finite() {
             self.add(
                 field,
-                format!("`{}` must be three finite numbers, it is {value}", last(field)),
+                format!(
+                    "`{}` must be three finite numbers, it is {value}",
+                    last(field)
+                ),
                 "",
             );
         }

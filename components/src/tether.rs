@@ -158,7 +158,9 @@ impl Tether {
     }
 
     fn check_start(&self, report: &mut FieldReport) {
-        let TetherStart::Positions(positions) = &self.start else { return };
+        let TetherStart::Positions(positions) = &self.start else {
+            return;
+        };
         if positions.len() != self.nodes as usize {
             report.add(
                 "start",

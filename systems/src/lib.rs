@@ -1,1 +1,11 @@
-//! x
+//! What things do: the physics of a tethered balloon system as pure systems, and the mathematics
+//! under them. Nothing here knows when it runs; the engine orders it.
+
+pub mod clock;
+pub mod dynamics;
+pub mod environment;
+pub mod fault;
+pub mod forces;
+pub mod instruments;
+pub mod integration;
+pub mod nonlinear_solver;

@@ -1,0 +1,11 @@
+//! From forces to accelerations: accumulators, tether points and segments, and the equations of
+//! motion of lumped masses and rigid bodies.
+
+pub mod accumulators;
+pub mod anchors;
+pub mod attachments;
+pub mod point_mass;
+pub mod rigid_body;
+pub mod rotation_chart;
+pub mod segments;
+pub mod state_vector;

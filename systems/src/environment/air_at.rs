@@ -1,0 +1,59 @@
+//! Density and wind at every body and at the midpoint of every segment that asks for its [`Air`].
+
+use aerobot_components::segment::{Segment, SegmentGeometry};
+use aerobot_components::state::{Air, Position};
+use bevy_ecs::change_detection::DetectChangesMut;
+use bevy_ecs::entity::Entity;
+use bevy_ecs::query::Without;
+use bevy_ecs::system::{Query, Res, ResMut};
+
+use super::EnvironmentModel;
+use crate::fault::FaultSlot;
+
+/// Finds the air at bodies.
+pub fn air_at_bodies(
+    environment: Res<EnvironmentModel>,
+    mut faults: ResMut<FaultSlot>,
+    mut bodies: Query<(Entity, &Position, &mut Air), Without<Segment>>,
+) {
+    for (entity, position, mut air) in &mut bodies {
+        *air = air_at(&environment, position.0.z, entity, &mut faults);
+    }
+}
+
+/// Finds the air at the midpoints of segments.
+pub fn air_at_segments(
+    environment: Res<EnvironmentModel>,
+    mut faults: ResMut<FaultSlot>,
+    mut segments: Query<(Entity, &SegmentGeometry, &mut Air)>,
+) {
+    for (entity, geometry, mut air) in &mut segments {
+        *air.bypass_change_detection() =
+            air_at(&environment, geometry.midpoint_m.z, entity, &mut faults);
+    }
+}
+
+#[inline]
+fn air_at(
+    environment: &EnvironmentModel,
+    altitude_m: f64,
+    entity: Entity,
+    faults: &mut FaultSlot,
+) -> Air {
+    let density = environment.atmosphere.density_kg_m3(altitude_m);
+    let velocity = environment.wind.velocity_m_s(altitude_m);
+    match (density, velocity) {
+        (Ok(density_kg_m3), Ok(velocity_m_s)) => Air {
+            density_kg_m3,
+            velocity_m_s,
+        },
+        (Err(outside), _) => {
+            faults.report(Some(entity), || outside.to_string());
+            Air::default()
+        }
+        (_, Err(outside)) => {
+            faults.report(Some(entity), || outside.to_string());
+            Air::default()
+        }
+    }
+}

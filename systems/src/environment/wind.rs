@@ -1,0 +1,337 @@
+//! The wind: a sum of sources over altitude and time.
+//!
+//! ```text
+//! W(z, t) = sum of  U                                       uniform
+//!                   (z - z0) s e                            shear, zero at z0
+//!                   V  for t in [from, until), else 0       step gust
+//!                   P(z)                                    profile, see wind_profile.rs
+//! ```
+//!
+//! | symbol | meaning | unit |
+//! |---|---|---|
+//! | W, U, V, P | velocity of the air in the inertial frame | m/s |
+//! | z, z0 | altitude, altitude without shear wind | m |
+//! | s, e | gradient, unit vector | 1/s, 1 |
+//! | t | time | s |
+//!
+//! Source: definitions (superposition of velocity fields).
+//!
+//! Assumptions: no dependence on the horizontal. A step gust is sharp, and the integrator never
+//! steps across one of its edges ([`Wind::edges_s`]): [`Wind::begin_interval`] fixes which steps
+//! blow, once for a whole interval between edges.
+
+use super::wind_profile::WindProfile;
+use glam::DVec3;
+use thiserror::Error;
+
+/// An altitude where the wind is not known, or one that is not a number.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[error(
+    "altitude {altitude_m} m is outside the wind profile, which is known from {lowest_m} m to \
+     {highest_m} m"
+)]
+pub struct OutsideWindProfile {
+    /// The altitude asked for, m.
+    pub altitude_m: f64,
+    /// The lowest altitude of the profile, m; -inf where it has none.
+    pub lowest_m: f64,
+    /// The highest altitude of the profile, m; inf where it has none.
+    pub highest_m: f64,
+}
+
+/// One part of the wind. Numbers are finite (the times of a step may be infinite) and directions
+/// of unit length: whoever builds one from a file checks that.
+#[derive(Debug, Clone, PartialEq)]
+pub enum WindSource {
+    /// The same everywhere, always.
+    Uniform {
+        /// Velocity of the air, m/s, inertial frame.
+        velocity_m_s: DVec3,
+    },
+    /// Growing linearly with altitude.
+    Shear {
+        /// Altitude where it is zero, m.
+        altitude_m: f64,
+        /// Speed gained per metre upward, 1/s.
+        gradient_per_s: f64,
+        /// Direction above `altitude_m`, unit vector, inertial frame.
+        direction: DVec3,
+    },
+    /// A gust of constant velocity, on `from_s <= t < until_s`.
+    Step {
+        /// Velocity of the air, m/s, inertial frame.
+        velocity_m_s: DVec3,
+        /// First time of the gust, s.
+        from_s: f64,
+        /// First time after the gust, s.
+        until_s: f64,
+    },
+    /// A table over altitude.
+    Profile(WindProfile),
+}
+
+impl WindSource {
+    /// Velocity (m/s) at `time_s` where it does not depend on altitude, else `None`.
+    fn level_velocity_m_s(&self, time_s: f64) -> Option<DVec3> {
+        match *self {
+            Self::Uniform { velocity_m_s } => Some(velocity_m_s),
+            Self::Step {
+                velocity_m_s,
+                from_s,
+                until_s,
+            } => {
+                let blows = from_s <= time_s && time_s < until_s;
+                Some(if blows { velocity_m_s } else { DVec3::ZERO })
+            }
+            Self::Shear { .. } | Self::Profile(_) => None,
+        }
+    }
+
+    /// Velocity (m/s) where it depends on altitude (m), else zero; `None` outside a profile.
+    #[inline]
+    fn layered_velocity_m_s(&self, z_m: f64) -> Option<DVec3> {
+        match self {
+            Self::Profile(profile) => profile.velocity_m_s(z_m),
+            Self::Shear {
+                altitude_m,
+                gradient_per_s,
+                direction,
+            } => {
+                let speed_m_s = (z_m - altitude_m) * gradient_per_s;
+                z_m.is_finite().then_some(speed_m_s * *direction)
+            }
+            Self::Uniform { .. } | Self::Step { .. } => Some(DVec3::ZERO),
+        }
+    }
+
+    /// Slope of the velocity over altitude (1/s); `None` outside a profile.
+    #[inline]
+    fn slope_per_s(&self, z_m: f64) -> Option<DVec3> {
+        match self {
+            Self::Profile(profile) => profile.slope_per_s(z_m),
+            Self::Shear {
+                gradient_per_s,
+                direction,
+                ..
+            } => z_m.is_finite().then_some(*gradient_per_s * *direction),
+            Self::Uniform { .. } | Self::Step { .. } => Some(DVec3::ZERO),
+        }
+    }
+
+    #[cold]
+    fn outside(&self, altitude_m: f64) -> OutsideWindProfile {
+        let (lowest_m, highest_m) = match self {
+            Self::Profile(profile) => (profile.lowest_m(), profile.highest_m()),
+            _ => (f64::NEG_INFINITY, f64::INFINITY),
+        };
+        OutsideWindProfile {
+            altitude_m,
+            lowest_m,
+            highest_m,
+        }
+    }
+}
+
+/// The sum of wind sources.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wind {
+    /// Sources that are the same at every altitude.
+    level: Vec<WindSource>,
+    /// Sources that depend on altitude.
+    layered: Vec<WindSource>,
+    /// Sum of `level` over the present interval, m/s.
+    level_m_s: DVec3,
+}
+
+impl Wind {
+    /// The sum of `sources`. No step that begins at a finite time blows before the first
+    /// [`Self::begin_interval`].
+    pub fn new(sources: Vec<WindSource>) -> Self {
+        let (level, layered) = sources
+            .into_iter()
+            .partition(|source| source.level_velocity_m_s(0.0).is_some());
+        let mut wind = Self {
+            level,
+            layered,
+            level_m_s: DVec3::ZERO,
+        };
+        wind.begin_interval(f64::NEG_INFINITY);
+        wind
+    }
+
+    /// No wind.
+    pub fn still() -> Self {
+        Self::new(Vec::new())
+    }
+
+    /// The finite times (s) at which a step gust begins or ends, increasing, each once.
+    pub fn edges_s(&self) -> Vec<f64> {
+        let mut edges: Vec<f64> = self
+            .level
+            .iter()
+            .filter_map(|source| match *source {
+                WindSource::Step {
+                    from_s, until_s, ..
+                } => Some([from_s, until_s]),
+                _ => None,
+            })
+            .flatten()
+            .filter(|edge| edge.is_finite())
+            .collect();
+        edges.sort_by(f64::total_cmp);
+        edges.dedup();
+        edges
+    }
+
+    /// Fixes the step gusts that blow from `start_s` (s) until the next edge, and sums what does
+    /// not depend on altitude.
+    pub fn begin_interval(&mut self, start_s: f64) {
+        self.level_m_s = self
+            .level
+            .iter()
+            .filter_map(|source| source.level_velocity_m_s(start_s))
+            .sum();
+    }
+
+    /// Whether the wind depends on altitude.
+    #[inline]
+    pub fn depends_on_altitude(&self) -> bool {
+        !self.layered.is_empty()
+    }
+
+    /// Velocity of the air (m/s, inertial frame) at an altitude (m), within the interval begun
+    /// last.
+    ///
+    /// # Errors
+    /// The altitude is outside a profile, or not finite and the wind depends on it.
+    #[inline]
+    pub fn velocity_m_s(&self, altitude_m: f64) -> Result<DVec3, OutsideWindProfile> {
+        let mut velocity_m_s = self.level_m_s;
+        for source in &self.layered {
+            velocity_m_s += source
+                .layered_velocity_m_s(altitude_m)
+                .ok_or_else(|| source.outside(altitude_m))?;
+        }
+        Ok(velocity_m_s)
+    }
+
+    /// Slope of the velocity of the air over altitude (1/s, inertial frame) at an altitude (m).
+    ///
+    /// # Errors
+    /// As [`Self::velocity_m_s`].
+    #[inline]
+    pub fn slope_per_s(&self, altitude_m: f64) -> Result<DVec3, OutsideWindProfile> {
+        let mut slope_per_s = DVec3::ZERO;
+        for source in &self.layered {
+            slope_per_s += source
+                .slope_per_s(altitude_m)
+                .ok_or_else(|| source.outside(altitude_m))?;
+        }
+        Ok(slope_per_s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn step(x: f64, from_s: f64, until_s: f64) -> WindSource {
+        WindSource::Step {
+            velocity_m_s: DVec3::new(x, 0.0, 0.0),
+            from_s,
+            until_s,
+        }
+    }
+
+    fn shear() -> WindSource {
+        WindSource::Shear {
+            altitude_m: 56_000.0,
+            gradient_per_s: 0.002,
+            direction: DVec3::Y,
+        }
+    }
+
+    fn x_from(wind: &mut Wind, start_s: f64) -> f64 {
+        wind.begin_interval(start_s);
+        wind.velocity_m_s(0.0).unwrap().x
+    }
+
+    #[test]
+    fn a_step_blows_from_its_first_time_until_just_before_its_last() {
+        let mut wind = Wind::new(vec![step(5.0, 10.0, 20.0)]);
+        for (start_s, expected) in [
+            (0.0, 0.0),
+            (10.0_f64.next_down(), 0.0),
+            (10.0, 5.0),
+            (20.0_f64.next_down(), 5.0),
+            (20.0, 0.0),
+            (15.0, 5.0),
+        ] {
+            assert_eq!(x_from(&mut wind, start_s), expected, "at {start_s} s");
+        }
+    }
+
+    #[test]
+    fn overlapping_steps_add_and_edges_are_sorted_once() {
+        let mut wind = Wind::new(vec![
+            step(1.0, 20.0, 30.0),
+            step(2.0, 10.0, 20.0),
+            step(4.0, 15.0, f64::INFINITY),
+            step(8.0, f64::NEG_INFINITY, 10.0),
+        ]);
+        assert_eq!(wind.edges_s(), [10.0, 15.0, 20.0, 30.0]);
+        assert_eq!(wind.velocity_m_s(0.0).unwrap().x, 8.0);
+        for (start_s, expected) in [
+            (0.0, 8.0),
+            (10.0, 2.0),
+            (15.0, 6.0),
+            (20.0, 5.0),
+            (30.0, 4.0),
+        ] {
+            assert_eq!(x_from(&mut wind, start_s), expected, "at {start_s} s");
+        }
+    }
+
+    #[test]
+    fn shear_is_zero_at_its_altitude_and_linear() {
+        let wind = Wind::new(vec![shear()]);
+        assert_eq!(wind.velocity_m_s(56_000.0), Ok(DVec3::ZERO));
+        assert_eq!(wind.velocity_m_s(57_000.0), Ok(DVec3::new(0.0, 2.0, 0.0)));
+        assert_eq!(wind.velocity_m_s(54_000.0), Ok(DVec3::new(0.0, -4.0, 0.0)));
+        assert_eq!(wind.slope_per_s(0.0), Ok(DVec3::new(0.0, 0.002, 0.0)));
+        assert!(wind.depends_on_altitude());
+    }
+
+    #[test]
+    fn sources_add() {
+        let uniform = WindSource::Uniform {
+            velocity_m_s: DVec3::new(-1.0, 0.0, 0.5),
+        };
+        let profile = WindSource::Profile(WindProfile::venus_zonal());
+        let mut wind = Wind::new(vec![profile, step(3.0, 0.0, 1.0), shear(), uniform]);
+        wind.begin_interval(0.0);
+        let velocity = wind.velocity_m_s(60_000.0).unwrap();
+        assert!((velocity - DVec3::new(72.7 - 1.0 + 3.0, 8.0, 0.5)).length() < 1e-12);
+        let secant = wind.velocity_m_s(58_001.0).unwrap() - wind.velocity_m_s(57_999.0).unwrap();
+        assert!((secant / 2.0 - wind.slope_per_s(58_000.0).unwrap()).length() < 1e-9);
+    }
+
+    #[test]
+    fn still_air_is_still_everywhere() {
+        let wind = Wind::still();
+        assert_eq!(wind.velocity_m_s(1e9), Ok(DVec3::ZERO));
+        assert!(wind.edges_s().is_empty() && !wind.depends_on_altitude());
+    }
+
+    #[test]
+    fn outside_a_profile_is_an_error_that_says_its_bounds() {
+        let wind = Wind::new(vec![WindSource::Profile(WindProfile::venus_zonal())]);
+        assert_eq!(
+            wind.velocity_m_s(70_001.0).unwrap_err().to_string(),
+            "altitude 70001 m is outside the wind profile, which is known from 0 m to 70000 m"
+        );
+        assert!(wind.velocity_m_s(f64::NAN).is_err());
+        assert!(wind.slope_per_s(-1.0).is_err());
+        assert!(Wind::new(vec![shear()]).velocity_m_s(f64::NAN).is_err());
+    }
+}

@@ -1,0 +1,174 @@
+//! Integrators, written against [`Equations`]: a state goes in, rates come out.
+//!
+//! An implicit method will ask its equations for derivative blocks as well; that door is a method
+//! added to [`Equations`] with a default that has none.
+
+pub mod dormand_prince;
+pub mod runge_kutta4;
+pub mod stability;
+pub mod stable_step;
+pub mod step_control;
+
+use crate::fault::Fault;
+
+/// Ordinary differential equations y' = f(t, y) of a state as
+/// [`StateVector`](crate::dynamics::state_vector) lays it out.
+pub trait Equations {
+    /// Writes the rates of `state` at `time_s`.
+    ///
+    /// # Errors
+    /// The fault that makes the state meaningless.
+    fn rates(&mut self, time_s: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Fault>;
+
+    /// Called once for every accepted state, whose evaluation was the last one: attitudes are taken
+    /// as the new centres of their charts, in `state` and in `rates`.
+    fn accept(&mut self, state: &mut [f64], rates: &mut [f64]);
+}
+
+/// A state on its way through time.
+#[derive(Clone, Debug, Default)]
+pub struct Trajectory {
+    /// Time, s.
+    pub time_s: f64,
+    /// The state.
+    pub state: Vec<f64>,
+    /// Its rates, valid while `rates_are_current`.
+    pub rates: Vec<f64>,
+    /// Whether `rates` belong to `state`; something that switches at `time_s` makes them stale.
+    pub rates_are_current: bool,
+    /// What the run has cost so far.
+    pub cost: Cost,
+}
+
+/// What an integration has cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Rejected steps.
+    pub rejected: u64,
+    /// Evaluations of the rates.
+    pub evaluations: u64,
+}
+
+impl Trajectory {
+    /// A trajectory that starts from `state` at `time_s`.
+    #[must_use]
+    pub fn new(time_s: f64, state: Vec<f64>) -> Self {
+        let rates = vec![0.0; state.len()];
+        Self {
+            time_s,
+            state,
+            rates,
+            rates_are_current: false,
+            cost: Cost::default(),
+        }
+    }
+
+    /// Evaluates the rates of the current state unless they are known.
+    ///
+    /// # Errors
+    /// As [`Equations::rates`].
+    pub fn refresh(&mut self, equations: &mut dyn Equations) -> Result<(), StepFailure> {
+        if !self.rates_are_current {
+            self.cost.evaluations += 1;
+            equations
+                .rates(self.time_s, &self.state, &mut self.rates)
+                .map_err(StepFailure::Fault)?;
+            if let Some(index) = first_not_finite(&self.rates) {
+                return Err(StepFailure::NotFinite { index });
+            }
+            self.rates_are_current = true;
+        }
+        Ok(())
+    }
+}
+
+/// A method that advances a trajectory step by step.
+pub trait Integrator: Send {
+    /// Takes one accepted step that ends at or before `limit_s`; on success the last evaluation was
+    /// that of the accepted state.
+    ///
+    /// # Errors
+    /// Why no step could be taken; the trajectory still holds the last accepted state.
+    fn step(
+        &mut self,
+        equations: &mut dyn Equations,
+        trajectory: &mut Trajectory,
+        limit_s: f64,
+    ) -> Result<(), StepFailure>;
+}
+
+/// Why a step could not be taken.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StepFailure {
+    /// The state, or one it led to, could not be evaluated.
+    Fault(Fault),
+    /// A number of the state or of its rates is not finite.
+    NotFinite {
+        /// Its place in the state.
+        index: usize,
+    },
+    /// The motion has left all bounds.
+    Runaway {
+        /// Its place in the state.
+        index: usize,
+        /// Its value, m, rad, m/s or rad/s.
+        value: f64,
+    },
+    /// The error asks for a step below round-off.
+    StepTooSmall {
+        /// The step, s.
+        step_s: f64,
+        /// Place in the state of the largest error.
+        index: usize,
+    },
+}
+
+/// No displacement in m and no speed in m/s of a balloon flight comes near this.
+pub const RUNAWAY: f64 = 1e8;
+
+/// Index of the first value that is not finite.
+#[must_use]
+pub fn first_not_finite(values: &[f64]) -> Option<usize> {
+    // The sum is finite if all are; it costs far less than asking each.
+    if values.iter().map(|value| value * 0.0).sum::<f64>() == 0.0 {
+        return None;
+    }
+    values.iter().position(|value| !value.is_finite())
+}
+
+/// Checks an accepted state.
+fn check_state(state: &[f64]) -> Result<(), StepFailure> {
+    if let Some(index) = first_not_finite(state) {
+        return Err(StepFailure::NotFinite { index });
+    }
+    match state.iter().position(|value| value.abs() > RUNAWAY) {
+        Some(index) => Err(StepFailure::Runaway {
+            index,
+            value: state[index],
+        }),
+        None => Ok(()),
+    }
+}
+
+/// `a + h * sum(c_i k_i)`, element by element, into `out`.
+fn combine(out: &mut [f64], start: &[f64], step: f64, terms: &[(f64, &[f64])]) {
+    match terms {
+        [(c, k)] => {
+            let c = step * c;
+            for ((out, a), k) in out.iter_mut().zip(start).zip(*k) {
+                *out = a + c * k;
+            }
+        }
+        _ => {
+            out.copy_from_slice(start);
+            for (c, k) in terms {
+                let c = step * c;
+                for (out, k) in out.iter_mut().zip(*k) {
+                    *out += c * k;
+                }
+            }
+        }
+    }
+}

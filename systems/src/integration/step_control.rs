@@ -1,0 +1,91 @@
+//! Step control by a proportional-integral rule (Gustafsson 1991; Hairer and Wanner 1996, IV.2):
+//! h' = h s err^(-0.7/q) err_previous^(0.4/q), with the safety s = 0.9, the factor within 0.2 and 4,
+//! and no growth after a rejection; q is the order of the error estimate plus one.
+
+const SAFETY: f64 = 0.9;
+const SMALLEST_FACTOR: f64 = 0.2;
+const LARGEST_FACTOR: f64 = 4.0;
+/// Steps are not cut below this part of the time (or of a second).
+const ROUND_OFF: f64 = 1e-14;
+
+/// Proposes steps and judges their errors.
+#[derive(Clone, Debug)]
+pub struct StepControl {
+    order: f64,
+    step_s: f64,
+    longest_s: f64,
+    previous_error: f64,
+    after_rejection: bool,
+}
+
+impl StepControl {
+    /// For a pair whose lower order plus one is `order`, with a first and a longest step in s.
+    #[must_use]
+    pub fn new(order: u32, first_step_s: f64, longest_s: f64) -> Self {
+        Self {
+            order: f64::from(order),
+            step_s: first_step_s.min(longest_s),
+            longest_s,
+            previous_error: 1.0,
+            after_rejection: false,
+        }
+    }
+
+    /// The next step from `time_s`, s, and whether it ends on `limit_s`.
+    ///
+    /// A limit within two steps is reached in two equal ones, so that no sliver remains.
+    #[must_use]
+    pub fn propose(&self, time_s: f64, limit_s: f64) -> (f64, bool) {
+        let remaining = limit_s - time_s;
+        if remaining <= self.step_s * (1.0 + 1e-9) {
+            (remaining, true)
+        } else if remaining < 2.0 * self.step_s {
+            (0.5 * remaining, false)
+        } else {
+            (self.step_s, false)
+        }
+    }
+
+    /// Judges a step of `h` with the scaled error `error` (1 is the tolerance) and sets the next;
+    /// `cut` says that a limit, not the error, chose the step.
+    pub fn accepts(&mut self, h: f64, error: f64, cut: bool) -> bool {
+        // A perfect step must not make the next proposal infinite.
+        let error = error.max(1e-10);
+        if error > 1.0 {
+            let factor = SAFETY * libm::pow(error, -1.0 / self.order);
+            self.step_s = h * factor.max(SMALLEST_FACTOR);
+            self.after_rejection = true;
+            return false;
+        }
+        let factor = SAFETY
+            * libm::pow(error, -0.7 / self.order)
+            * libm::pow(self.previous_error, 0.4 / self.order);
+        let most = if self.after_rejection {
+            1.0
+        } else {
+            LARGEST_FACTOR
+        };
+        let next = (h * factor.clamp(SMALLEST_FACTOR, most)).min(self.longest_s);
+        // A step that a limit has cut says little of how long the next may be.
+        self.step_s = if cut || h < 0.999 * self.step_s {
+            next.max(self.step_s)
+        } else {
+            next
+        };
+        self.previous_error = error.max(1e-4);
+        self.after_rejection = false;
+        true
+    }
+
+    /// Shortens the step after one that could not be evaluated.
+    pub fn failed(&mut self, h: f64) {
+        self.step_s = h * SMALLEST_FACTOR;
+        self.after_rejection = true;
+    }
+
+    /// Whether the step has shrunk to round-off of the time `time_s`.
+    #[must_use]
+    pub fn is_exhausted(&self, time_s: f64) -> bool {
+        self.step_s < ROUND_OFF * time_s.abs().max(1.0)
+    }
+}
