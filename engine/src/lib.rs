@@ -1,1 +1,17 @@
-//! x
+//! When things happen: the world, its schedules and phases, scene loading, plugins, recording and
+//! running. The only crate that orders anything; [`schedule`] is its table of contents.
+
+pub mod balloon_sizing;
+pub mod builtin;
+pub mod contents;
+pub mod evaluation;
+pub mod placement;
+pub mod plugin;
+pub mod recording;
+pub mod run_folder;
+pub mod scene;
+pub mod schedule;
+pub mod simulation;
+pub mod stable_step;
+
+pub mod world;

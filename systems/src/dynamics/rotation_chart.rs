@@ -33,6 +33,22 @@ pub fn exponential(rotation_rad: DVec3) -> DQuat {
     DQuat::from_xyzw(v.x, v.y, v.z, w)
 }
 
+/// The rotation vector of a unit quaternion, rad, of length at most pi.
+#[must_use]
+pub fn logarithm(rotation: DQuat) -> DVec3 {
+    let rotation = if rotation.w < 0.0 {
+        -rotation
+    } else {
+        rotation
+    };
+    let vector = DVec3::new(rotation.x, rotation.y, rotation.z);
+    let sine = vector.length();
+    if sine < 1e-12 {
+        return 2.0 * vector;
+    }
+    vector * (2.0 * libm::atan2(sine, rotation.w) / sine)
+}
+
 /// Rate of the rotation vector, rad/s, for an angular velocity in the body frame in rad/s.
 #[must_use]
 pub fn rotation_rate(rotation_rad: DVec3, rate_rad_s: DVec3) -> DVec3 {
@@ -67,6 +83,17 @@ mod tests {
             let rate = rotation_rate(angle * axis, omega);
             let nearby = rotation_rate(SMALL_ANGLE_RAD * axis, omega);
             assert!((rate - nearby).length() < 1e-7);
+        }
+    }
+
+    #[test]
+    fn the_logarithm_undoes_the_exponential() {
+        for vector in [
+            DVec3::ZERO,
+            DVec3::new(1e-9, 0.0, 2e-9),
+            DVec3::new(0.4, -1.3, 2.1),
+        ] {
+            assert!((logarithm(exponential(vector)) - vector).length() < 1e-14);
         }
     }
 

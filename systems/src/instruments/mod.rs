@@ -1,1 +1,8 @@
-//! Built-in channels.
+//! Instruments and built-in channels, one quantity a file: what is read off an accepted state.
+
+pub mod airspeed;
+pub mod attachment_tension;
+pub mod attitude;
+pub mod channel_log;
+pub mod energy;
+pub mod swing;

@@ -1,0 +1,136 @@
+//! Bodies and anchors: their state, weight and equations of motion.
+
+use aerobot_components::aerodynamics::{Sphere, SphereRadius};
+use aerobot_components::body::{Anchor, Body, Fixed, Motion, Moving, Pose};
+use aerobot_components::scene_component::FieldReport;
+use aerobot_components::state::{
+    Acceleration, AddedInertia, AngularAcceleration, AngularVelocity, Attitude, ChartAttitude,
+    Force, Inertia, Mass, Origin, Position, Torque, Velocity,
+};
+use aerobot_components::tether::Tether;
+use aerobot_systems::dynamics::accumulators::clear_accumulators;
+use aerobot_systems::dynamics::anchors::move_anchors;
+use aerobot_systems::dynamics::rigid_body::{CarriedMass, accelerate_bodies};
+use aerobot_systems::environment::EnvironmentModel;
+use aerobot_systems::forces::weight::weight;
+use bevy_ecs::world::World;
+use glam::DQuat;
+
+use crate::balloon_sizing::sphere_radii;
+use crate::plugin::{Plugin, Simulator};
+use crate::scene::{Scene, SetupError};
+use crate::schedule::Phase;
+use crate::world::{Free, SceneEntities};
+
+/// Bodies and anchors: what they are and how they are weighed.
+pub struct BodiesPlugin;
+
+impl Plugin for BodiesPlugin {
+    fn build(&self, simulator: &mut Simulator) {
+        simulator
+            .register_component::<Body>()
+            .register_component::<Pose>()
+            .register_component::<Motion>()
+            .register_component::<Fixed>()
+            .register_component::<Moving>()
+            .add_check(check_inertia)
+            .add_setup(set_up)
+            .add_systems(Phase::Prepare, || clear_accumulators)
+            .add_systems(Phase::Prepare, || move_anchors)
+            .add_systems(Phase::Forces, || weight);
+    }
+}
+
+/// The equations of motion of bodies, after everything that loads them.
+pub struct MotionPlugin;
+
+impl Plugin for MotionPlugin {
+    fn build(&self, simulator: &mut Simulator) {
+        simulator.add_systems(Phase::Dynamics, || accelerate_bodies);
+    }
+}
+
+fn check_inertia(scene: &Scene, report: &mut FieldReport) {
+    for (entity, body) in scene.with::<Body>() {
+        if body.inertia.needs_sphere() && !entity.has::<Sphere>() {
+            report.add(
+                &format!("{}.inertia", entity.path::<Body>()),
+                "the inertia of a sphere takes its radius from a `Sphere`, and there is none",
+                "add `Sphere: (radius_m: ..)` to the entity, or name another shape",
+            );
+        }
+    }
+    for (entity, motion) in scene.with::<Motion>() {
+        let is_point = entity.get::<Body>().is_some_and(|body| {
+            matches!(
+                body.inertia,
+                aerobot_components::inertia::InertiaShape::Point
+            )
+        });
+        if motion.rate_rad_s.length() > 0.0 && (is_point || entity.has::<Tether>()) {
+            report.add(
+                &format!("{}.rate_rad_s", entity.path::<Motion>()),
+                "what has no inertia cannot turn",
+                "give the body an `inertia`",
+            );
+        }
+    }
+}
+
+/// State of every body and anchor. Poses that are not given follow when all forces are known.
+fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
+    let radii = sphere_radii(scene, &world.resource::<EnvironmentModel>().atmosphere)?;
+    for entity in &scene.entities {
+        let Some(id) = world.resource::<SceneEntities>().get(&entity.name) else {
+            continue;
+        };
+        let radius_m = radii.get(&entity.name).copied();
+        let mut spawned = world.entity_mut(id);
+        if let Some(radius_m) = radius_m {
+            spawned.insert(SphereRadius(radius_m));
+        }
+        let body = entity.get::<Body>();
+        let fixed = entity.get::<Fixed>();
+        let moving = entity.get::<Moving>();
+        if body.is_none() && fixed.is_none() && moving.is_none() {
+            continue;
+        }
+        let (position, attitude) = match (fixed, moving, entity.get::<Pose>()) {
+            (Some(fixed), ..) => (fixed.position_m, fixed.attitude.quaternion()),
+            (None, Some(moving), _) => (moving.position_m, DQuat::IDENTITY),
+            (None, None, Some(pose)) => (pose.position_m, pose.attitude.quaternion()),
+            (None, None, None) => Default::default(),
+        };
+        let (velocity, rate) = entity
+            .get::<Motion>()
+            .map_or_else(Default::default, |motion| {
+                (motion.velocity_m_s, motion.rate_rad_s)
+            });
+        spawned.insert((
+            Position(position),
+            Origin(position),
+            Velocity(velocity),
+            Attitude(attitude),
+            ChartAttitude(attitude),
+            AngularVelocity(rate),
+            Force::default(),
+            Torque::default(),
+            Acceleration::default(),
+            AngularAcceleration::default(),
+            CarriedMass::default(),
+            AddedInertia::default(),
+        ));
+        if let Some(body) = body {
+            spawned.insert(Mass(body.mass_kg));
+            if let Some(tensor) = body.inertia.tensor(body.mass_kg, radius_m.unwrap_or(0.0)) {
+                spawned.insert(Inertia(tensor));
+            }
+        }
+        if fixed.is_some() || moving.is_some() {
+            spawned.insert(Anchor);
+        } else {
+            spawned.insert(Free);
+        }
+    }
+    Ok(())
+}

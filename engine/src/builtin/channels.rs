@@ -1,0 +1,202 @@
+//! Built-in channels: which entities record which.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use aerobot_components::body::{Anchor, Body};
+use aerobot_components::run::ChannelSelection;
+use aerobot_components::scene_component::FieldReport;
+use aerobot_components::state::{Air, FirstOrderState, Inertia, Position};
+use aerobot_components::tether::{Attachment, Tether, TetherParts};
+use aerobot_systems::clock::Clock;
+use aerobot_systems::dynamics::attachments::accelerate_attachments;
+use aerobot_systems::instruments::airspeed::{AIRSPEED, airspeed};
+use aerobot_systems::instruments::attachment_tension::{
+    TENSION_FROM, TENSION_TO, attachment_tension,
+};
+use aerobot_systems::instruments::attitude::{HEADING, TILT, attitude};
+use aerobot_systems::instruments::channel_log::{BuiltInChannels, ChannelLog};
+use aerobot_systems::instruments::energy::{
+    KINETIC, MECHANICAL, POTENTIAL, WORK, WorkIntegral, energy, nonconservative_power,
+};
+use aerobot_systems::instruments::swing::{SWING, SWING_X, SWING_Y, Support, swing};
+use bevy_ecs::entity::Entity;
+use bevy_ecs::system::{Res, ResMut};
+use bevy_ecs::world::World;
+
+use super::recorder::Recorder;
+use crate::plugin::{Plugin, Simulator};
+use crate::scene::source::nearest;
+use crate::scene::{Scene, SceneEntity, SetupError};
+use crate::schedule::Phase;
+use crate::world::{SceneEntities, next_spawn_order};
+
+const BODY_CHANNELS: [&str; 6] = [AIRSPEED, TILT, HEADING, SWING, SWING_X, SWING_Y];
+const TETHER_CHANNELS: [&str; 2] = [TENSION_FROM, TENSION_TO];
+const SYSTEM_CHANNELS: [&str; 4] = [KINETIC, POTENTIAL, MECHANICAL, WORK];
+
+/// Airspeed, tilt, heading, swing, attachment tensions and energy.
+pub struct ChannelsPlugin;
+
+impl Plugin for ChannelsPlugin {
+    fn build(&self, simulator: &mut Simulator) {
+        simulator
+            .add_check(check_names)
+            .add_setup(set_up)
+            .add_systems(Phase::Dynamics, || nonconservative_power)
+            .add_systems(Phase::Observe, || find_due)
+            .add_systems(Phase::Observe, || accelerate_attachments)
+            .add_systems(Phase::Observe, || airspeed)
+            .add_systems(Phase::Observe, || attitude)
+            .add_systems(Phase::Observe, || swing)
+            .add_systems(Phase::Observe, || attachment_tension)
+            .add_systems(Phase::Observe, || energy);
+    }
+}
+
+/// The channels that exist on an entity of a scene.
+fn known_channels(entity: &SceneEntity) -> &'static [&'static str] {
+    if entity.has::<Tether>() {
+        &TETHER_CHANNELS
+    } else if entity.has::<Body>() {
+        &BODY_CHANNELS
+    } else {
+        &[]
+    }
+}
+
+/// Says whether built-in channels are due at the time of the accepted state.
+fn find_due(clock: Res<Clock>, recorder: Res<Recorder>, mut log: ResMut<ChannelLog>) {
+    log.built_in_due = recorder.channels_due(clock.time_s);
+}
+
+fn check_names(scene: &Scene, report: &mut FieldReport) {
+    let ChannelSelection::Only(channels) = &scene.run.record.channels else {
+        return;
+    };
+    for (name, wanted) in channels {
+        let known = match scene.entity(name) {
+            Some(entity) => known_channels(entity),
+            None if name == "system" => &SYSTEM_CHANNELS,
+            None => continue,
+        };
+        for channel in wanted
+            .iter()
+            .filter(|channel| !known.contains(&channel.as_str()))
+        {
+            let near = nearest(channel, known.iter().copied());
+            let help = near.map_or_else(
+                || format!("it has `{}`", known.join("`, `")),
+                |near| format!("did you mean `{near}`?"),
+            );
+            report.add(
+                &format!("run.record.channels.{name}"),
+                format!("`{name}` has no channel `{channel}`"),
+                help,
+            );
+        }
+    }
+}
+
+fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
+    world.init_resource::<ChannelLog>();
+    for entity in &scene.entities {
+        let Some(id) = world.resource::<SceneEntities>().get(&entity.name) else {
+            continue;
+        };
+        let wanted = wanted(
+            &scene.run.record.channels,
+            &entity.name,
+            known_channels(entity),
+        );
+        let mut spawned = world.entity_mut(id);
+        let is_body = entity.has::<Body>();
+        let asks_for_air = matches!(&scene.run.record.channels, ChannelSelection::Only(_))
+            && wanted.contains(AIRSPEED);
+        if asks_for_air && is_body && spawned.get::<Air>().is_none() {
+            spawned.insert(Air::default());
+        }
+        let turns = spawned.get::<Inertia>().is_some();
+        let channels = wanted
+            .into_iter()
+            .filter(|name| turns || (*name != TILT && *name != HEADING));
+        spawned.insert(BuiltInChannels(channels.collect()));
+    }
+    let system = wanted(&scene.run.record.channels, "system", &SYSTEM_CHANNELS);
+    if !system.is_empty() {
+        let order = next_spawn_order(world);
+        let work = FirstOrderState {
+            value: 0.0,
+            rate_per_s: 0.0,
+            // The work follows from the motion and does not steer it.
+            error_scale: f64::INFINITY,
+        };
+        world.spawn((order, WorkIntegral, work, BuiltInChannels(system)));
+    }
+    Ok(())
+}
+
+fn wanted(
+    selection: &ChannelSelection,
+    name: &str,
+    known: &'static [&'static str],
+) -> BTreeSet<&'static str> {
+    match selection {
+        ChannelSelection::None => BTreeSet::new(),
+        ChannelSelection::Standard if name == "system" => BTreeSet::new(),
+        ChannelSelection::Standard | ChannelSelection::All => known.iter().copied().collect(),
+        ChannelSelection::Only(channels) => match channels.get(name) {
+            Some(wanted) => known
+                .iter()
+                .copied()
+                .filter(|name| wanted.iter().any(|w| w == name))
+                .collect(),
+            None => BTreeSet::new(),
+        },
+    }
+}
+
+/// Finds what each body hangs from, once everything is placed: the tether whose other end is highest
+/// above its own.
+pub(crate) fn find_supports(world: &mut World) {
+    let mut supports: BTreeMap<Entity, (f64, Support)> = BTreeMap::new();
+    let mut tethers = world.query::<&TetherParts>();
+    for parts in tethers.iter(world) {
+        let (Some(&first), Some(&last)) = (parts.points.first(), parts.points.last()) else {
+            continue;
+        };
+        let height = |point| {
+            world
+                .get::<Position>(point)
+                .map_or(0.0, |position| position.0.z)
+        };
+        let rise = height(first) - height(last);
+        let (above, below) = if rise >= 0.0 {
+            (first, last)
+        } else {
+            (last, first)
+        };
+        let Some(hung) = world.get::<Attachment>(below).map(|end| end.carrier) else {
+            continue;
+        };
+        if world.get::<Anchor>(hung).is_some() || rise == 0.0 {
+            continue;
+        }
+        let found = (rise.abs(), Support { above, below });
+        match supports.get(&hung) {
+            Some((known, _)) if *known >= found.0 => {}
+            _ => {
+                supports.insert(hung, found);
+            }
+        }
+    }
+    for (body, (_, support)) in supports {
+        world.entity_mut(body).insert(support);
+    }
+}
+
+/// Whether a channel of this name is a built-in one.
+pub(crate) fn is_built_in(channel: &str) -> bool {
+    [&BODY_CHANNELS[..], &TETHER_CHANNELS, &SYSTEM_CHANNELS]
+        .iter()
+        .any(|channels| channels.contains(&channel))
+}

@@ -1,0 +1,145 @@
+//! The environment of a scene as a resource, and the air at everything that asks for it.
+
+use aerobot_components::aerodynamics::Drag;
+use aerobot_components::environment::{AtmosphereSpec, Environment, WindSpec};
+use aerobot_components::scene_component::FieldReport;
+use aerobot_systems::environment::EnvironmentModel;
+use aerobot_systems::environment::air_at::{air_at_bodies, air_at_segments};
+use aerobot_systems::environment::atmosphere::Atmosphere;
+use aerobot_systems::environment::wind::{Wind, WindSource};
+use aerobot_systems::environment::wind_profile::WindProfile;
+use bevy_ecs::schedule::IntoScheduleConfigs;
+use bevy_ecs::world::World;
+
+use crate::plugin::{Plugin, Simulator};
+use crate::scene::tables::{Tables, gas_of};
+use crate::scene::{Scene, SetupError};
+use crate::schedule::Phase;
+use crate::world::Edges;
+
+/// Gravity, air and wind.
+pub struct EnvironmentPlugin;
+
+impl Plugin for EnvironmentPlugin {
+    fn build(&self, simulator: &mut Simulator) {
+        simulator
+            .add_check(check_temperature)
+            .add_setup(set_up)
+            .add_systems(Phase::Environment, || {
+                (air_at_bodies, air_at_segments).chain()
+            });
+    }
+}
+
+fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
+    let model = environment_model(&scene.environment, &scene.tables);
+    world.resource_mut::<Edges>().add(model.wind.edges_s());
+    // The start of the run is an edge too: the first interval begins there.
+    world.resource_mut::<Edges>().add([0.0]);
+    world.insert_resource(model);
+    Ok(())
+}
+
+/// The model that a scene's environment describes; its tables have been read.
+#[must_use]
+pub fn environment_model(environment: &Environment, tables: &Tables) -> EnvironmentModel {
+    let sources = environment
+        .wind
+        .iter()
+        .enumerate()
+        .filter_map(|(index, wind)| wind_source(wind, index, tables))
+        .collect();
+    EnvironmentModel {
+        gravity: environment.gravity,
+        atmosphere: atmosphere(environment, tables),
+        wind: Wind::new(sources),
+    }
+}
+
+/// The air that a scene describes.
+#[must_use]
+pub fn atmosphere(environment: &Environment, tables: &Tables) -> Atmosphere {
+    match &environment.atmosphere {
+        AtmosphereSpec::Vira => Atmosphere::vira(),
+        AtmosphereSpec::Vacuum => Atmosphere::Vacuum,
+        AtmosphereSpec::StandardAtmosphere1976 => Atmosphere::StandardAtmosphere1976,
+        AtmosphereSpec::Uniform {
+            density_kg_m3,
+            temperature_k,
+            gas,
+        } => Atmosphere::Uniform {
+            density_kg_m3: *density_kg_m3,
+            temperature_k: *temperature_k,
+            gas: gas_of(*gas),
+        },
+        AtmosphereSpec::Exponential {
+            density_kg_m3,
+            altitude_m,
+            scale_height_m,
+            temperature_k,
+            gas,
+        } => Atmosphere::Exponential {
+            density_kg_m3: *density_kg_m3,
+            altitude_m: *altitude_m,
+            scale_height_m: *scale_height_m,
+            temperature_k: *temperature_k,
+            gas: gas_of(*gas),
+        },
+        AtmosphereSpec::Table { .. } => tables
+            .atmosphere
+            .clone()
+            .map_or(Atmosphere::Vacuum, Atmosphere::Table),
+    }
+}
+
+fn wind_source(wind: &WindSpec, index: usize, tables: &Tables) -> Option<WindSource> {
+    Some(match wind {
+        WindSpec::Uniform { velocity_m_s } => WindSource::Uniform {
+            velocity_m_s: *velocity_m_s,
+        },
+        WindSpec::Shear {
+            altitude_m,
+            gradient_per_s,
+            direction,
+        } => WindSource::Shear {
+            altitude_m: *altitude_m,
+            gradient_per_s: *gradient_per_s,
+            direction: *direction,
+        },
+        WindSpec::Step {
+            velocity_m_s,
+            from_s,
+            until_s,
+        } => WindSource::Step {
+            velocity_m_s: *velocity_m_s,
+            from_s: *from_s,
+            until_s: *until_s,
+        },
+        WindSpec::VenusZonal => WindSource::Profile(WindProfile::venus_zonal()),
+        WindSpec::Profile { .. } => WindSource::Profile(tables.winds.get(&index)?.clone()),
+    })
+}
+
+/// A Reynolds number needs a viscosity, and a viscosity a temperature.
+fn check_temperature(scene: &Scene, report: &mut FieldReport) {
+    let unknown = match &scene.environment.atmosphere {
+        AtmosphereSpec::Uniform { temperature_k, .. }
+        | AtmosphereSpec::Exponential { temperature_k, .. } => temperature_k.is_none(),
+        AtmosphereSpec::Table { .. } => match &scene.tables.atmosphere {
+            Some(table) => matches!(table.temperature_k(table.lowest_m()), Some(None)),
+            None => false,
+        },
+        AtmosphereSpec::Vira | AtmosphereSpec::Vacuum | AtmosphereSpec::StandardAtmosphere1976 => {
+            false
+        }
+    };
+    for (entity, drag) in scene.with::<Drag>() {
+        if unknown && matches!(drag, Drag::Morrison) {
+            report.add(
+                &entity.path::<Drag>(),
+                "`Morrison` needs the temperature of the air, and this atmosphere has none",
+                "give the atmosphere a `temperature_k`",
+            );
+        }
+    }
+}

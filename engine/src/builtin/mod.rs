@@ -1,0 +1,26 @@
+//! The built-in families of components and systems, each a plugin like any user's.
+
+pub mod aerodynamics;
+pub mod bodies;
+pub mod channels;
+pub mod environment;
+pub mod recorder;
+pub mod slack_events;
+pub mod tethers;
+
+use crate::plugin::Simulator;
+use crate::schedule::Phase;
+
+/// Registers all of them. The order is that of their setups, and of their systems within a phase.
+pub(crate) fn register(simulator: &mut Simulator) {
+    simulator
+        .add_plugin(&environment::EnvironmentPlugin)
+        .add_plugin(&bodies::BodiesPlugin)
+        .add_plugin(&aerodynamics::AerodynamicsPlugin)
+        .add_plugin(&tethers::TethersPlugin)
+        .add_plugin(&bodies::MotionPlugin)
+        .add_plugin(&channels::ChannelsPlugin)
+        .add_plugin(&slack_events::SlackEventsPlugin)
+        .add_plugin(&recorder::RecorderPlugin)
+        .add_systems(Phase::Integrate, || crate::evaluation::integrate);
+}

@@ -1,0 +1,292 @@
+//! Tethers: from one component of a scene to attachments, nodes and segments.
+
+use aerobot_components::aerodynamics::SphereRadius;
+use aerobot_components::body::{Body, Fixed, Motion, Moving};
+use aerobot_components::inertia::InertiaShape;
+use aerobot_components::scene_component::FieldReport;
+use aerobot_components::segment::{
+    KelvinVoigt, Segment, SegmentDrag, SegmentGeometry, SegmentLoad, Tension,
+};
+use aerobot_components::state::{Acceleration, Air, Force, Mass, Origin, Position, Velocity};
+use aerobot_components::tether::{
+    Attachment, AttachmentPoint, NamedPoint, Tether, TetherEnd, TetherNode, TetherParts,
+    TetherPoint, TetherSide,
+};
+use aerobot_systems::dynamics::attachments::{load_carriers, place_attachments};
+use aerobot_systems::dynamics::point_mass::accelerate_nodes;
+use aerobot_systems::dynamics::rigid_body::CarriedMass;
+use aerobot_systems::dynamics::segments::{PointArrays, load_points, segment_geometry};
+use aerobot_systems::forces::segment_drag::segment_drag;
+use aerobot_systems::forces::spring::spring;
+use bevy_ecs::entity::Entity;
+use bevy_ecs::schedule::IntoScheduleConfigs;
+use bevy_ecs::world::World;
+use glam::DVec3;
+
+use crate::plugin::{Plugin, Simulator};
+use crate::scene::source::nearest;
+use crate::scene::{Scene, SceneEntity, SetupError};
+use crate::schedule::Phase;
+use crate::world::{EntityName, Free, SceneEntities, SpawnOrder, next_spawn_order};
+
+/// Tethers of lumped masses and Kelvin-Voigt segments.
+pub struct TethersPlugin;
+
+impl Plugin for TethersPlugin {
+    fn build(&self, simulator: &mut Simulator) {
+        simulator
+            .register_component::<Tether>()
+            .add_check(check_ends)
+            .add_setup(set_up)
+            .add_systems(Phase::Prepare, || {
+                (place_attachments, segment_geometry).chain()
+            })
+            .add_systems(Phase::Forces, || spring)
+            .add_systems(Phase::Forces, || segment_drag)
+            .add_systems(Phase::Dynamics, || {
+                (load_points, load_carriers, accelerate_nodes).chain()
+            });
+    }
+}
+
+fn check_ends(scene: &Scene, report: &mut FieldReport) {
+    for (entity, tether) in scene.with::<Tether>() {
+        let path = entity.path::<Tether>();
+        for (field, end) in [("from", &tether.from), ("to", &tether.to)] {
+            check_end(scene, entity, end, &format!("{path}.{field}"), report);
+        }
+        if tether.from.0 == tether.to.0 {
+            report.add(
+                &format!("{path}.to"),
+                format!("the tether runs from `{}` to itself", tether.to.0),
+                "the two ends of a tether are on different bodies or anchors",
+            );
+        }
+    }
+}
+
+fn check_end(
+    scene: &Scene,
+    tether: &SceneEntity,
+    end: &TetherEnd,
+    path: &str,
+    report: &mut FieldReport,
+) {
+    let TetherEnd(name, point) = end;
+    let Some(target) = scene.entity(name) else {
+        let names = scene
+            .entities
+            .iter()
+            .filter(|entity| !entity.has::<Tether>());
+        let near = nearest(name, names.map(|entity| entity.name.as_str()));
+        let help = near.map_or_else(String::new, |near| format!("did you mean `{near}`?"));
+        report.add(
+            path,
+            format!("there is no entity `{name}` to tether to"),
+            help,
+        );
+        return;
+    };
+    if let Some(other) = target.get::<Tether>() {
+        let closes = other.from.0 == tether.name || other.to.0 == tether.name;
+        let message = if closes && target.name != tether.name {
+            format!(
+                "`{}` and `{name}` are tethered to each other in a cycle",
+                tether.name
+            )
+        } else {
+            format!("`{name}` is a tether, and a tether ends at a body or an anchor")
+        };
+        report.add(
+            path,
+            message,
+            "give the name of an entity with `Body`, `Fixed` or `Moving`",
+        );
+        return;
+    }
+    if !(target.has::<Body>() || target.has::<Fixed>() || target.has::<Moving>()) {
+        report.add(
+            path,
+            format!("`{name}` is neither a body nor an anchor"),
+            "an entity with `Body`, `Fixed` or `Moving` can carry a tether",
+        );
+        return;
+    }
+    check_point(target, *point, path, report);
+}
+
+fn check_point(target: &SceneEntity, point: AttachmentPoint, path: &str, report: &mut FieldReport) {
+    let shape = target.get::<Body>().map(|body| body.inertia);
+    let has_sphere = target.has::<aerobot_components::aerodynamics::Sphere>();
+    let named_height = matches!(
+        point,
+        AttachmentPoint::Named(NamedPoint::Bottom | NamedPoint::Top)
+    );
+    if named_height && !has_sphere && shape.and_then(|shape| shape.half_height_m()).is_none() {
+        report.add(
+            path,
+            format!("`{}` has no shape whose top or bottom would be known", target.name),
+            "give the offset (x, y, z) in metres, or the body a `Sphere` or an inertia with a height",
+        );
+    }
+    let off_centre = named_height
+        || matches!(point, AttachmentPoint::Offset(x, y, z) if x != 0.0 || y != 0.0 || z != 0.0);
+    let is_anchor = target.has::<Fixed>() || target.has::<Moving>();
+    if off_centre && !is_anchor && matches!(shape, Some(InertiaShape::Point)) {
+        report.add(
+            path,
+            format!(
+                "`{}` is a point: it has no place off its centre",
+                target.name
+            ),
+            "attach at `Centre`, or give the body an `inertia`",
+        );
+    }
+}
+
+/// Place of an attachment from the carrier's centre of mass, body frame, m.
+fn offset_m(world: &World, carrier: Entity, point: AttachmentPoint) -> DVec3 {
+    let half_height = world
+        .get::<SphereRadius>(carrier)
+        .map(|radius| radius.0)
+        .or_else(|| {
+            world
+                .get::<Body>(carrier)
+                .and_then(|body| body.inertia.half_height_m())
+        })
+        .unwrap_or(0.0);
+    match point {
+        AttachmentPoint::Offset(x, y, z) => DVec3::new(x, y, z),
+        AttachmentPoint::Named(NamedPoint::Centre) => DVec3::ZERO,
+        AttachmentPoint::Named(NamedPoint::Bottom) => DVec3::new(0.0, 0.0, -half_height),
+        AttachmentPoint::Named(NamedPoint::Top) => DVec3::new(0.0, 0.0, half_height),
+    }
+}
+
+fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
+    let mut points = 0;
+    for (entity, tether) in scene.with::<Tether>() {
+        let names = world.resource::<SceneEntities>();
+        let (Some(id), Some(from), Some(to)) = (
+            names.get(&entity.name),
+            names.get(&tether.from.0),
+            names.get(&tether.to.0),
+        ) else {
+            continue;
+        };
+        let velocity = entity
+            .get::<Motion>()
+            .map_or(DVec3::ZERO, |motion| motion.velocity_m_s);
+        let mut parts = TetherParts::default();
+        let ends = [
+            (from, tether.from.1, TetherSide::From),
+            (to, tether.to.1, TetherSide::To),
+        ];
+        parts
+            .points
+            .push(spawn_attachment(world, id, tether, ends[0], points));
+        let order = next_spawn_order(world).0;
+        for number in 1..=tether.nodes {
+            let place = number as usize;
+            parts.points.push(
+                world
+                    .spawn((
+                        EntityName(format!("{}/{number}", entity.name).into()),
+                        SpawnOrder(order + place),
+                        TetherNode { tether: id, number },
+                        TetherPoint {
+                            index: points + place,
+                        },
+                        Free,
+                        Mass(tether.node_mass_kg()),
+                        Position::default(),
+                        Origin::default(),
+                        Velocity(velocity),
+                        Force::default(),
+                        Acceleration::default(),
+                    ))
+                    .id(),
+            );
+        }
+        let last = points + tether.nodes as usize + 1;
+        parts
+            .points
+            .push(spawn_attachment(world, id, tether, ends[1], last));
+        for number in 1..=tether.segments() {
+            parts
+                .segments
+                .push(spawn_segment(world, id, tether, number, points));
+        }
+        points = last + 1;
+        world.entity_mut(id).insert(parts);
+    }
+    world.insert_resource(PointArrays::new(points));
+    Ok(())
+}
+
+fn spawn_attachment(
+    world: &mut World,
+    tether_id: Entity,
+    tether: &Tether,
+    end: (Entity, AttachmentPoint, TetherSide),
+    index: usize,
+) -> Entity {
+    let (carrier, point, side) = end;
+    let offset_m = offset_m(world, carrier, point);
+    let mass_kg = tether.end_mass_kg();
+    if let Some(mut carried) = world.get_mut::<CarriedMass>(carrier) {
+        carried.add(mass_kg, offset_m);
+    }
+    world
+        .spawn((
+            Attachment {
+                tether: tether_id,
+                carrier,
+                offset_m,
+                side,
+            },
+            TetherPoint { index },
+            Mass(mass_kg),
+            Position::default(),
+            Velocity::default(),
+            Force::default(),
+            Acceleration::default(),
+        ))
+        .id()
+}
+
+fn spawn_segment(
+    world: &mut World,
+    tether_id: Entity,
+    tether: &Tether,
+    number: u32,
+    first_point: usize,
+) -> Entity {
+    let mut segment = world.spawn((
+        Segment {
+            tether: tether_id,
+            number,
+            from_point: first_point + number as usize - 1,
+        },
+        KelvinVoigt {
+            rest_length_m: tether.segment_length_m(),
+            stiffness_n_m: tether.segment_stiffness_n_m(),
+            damping_n_s_m: tether.segment_damping_n_s_m(),
+            slack: tether.slack,
+        },
+        SegmentGeometry::default(),
+        SegmentLoad::default(),
+        Tension::default(),
+    ));
+    if let Some(drag) = tether.drag {
+        segment.insert((
+            SegmentDrag {
+                diameter_m: tether.diameter_m,
+                normal: drag.normal,
+                tangential: drag.tangential,
+            },
+            Air::default(),
+        ));
+    }
+    segment.id()
+}

@@ -1,0 +1,164 @@
+//! The world as a system of ordinary differential equations, and the exclusive system that advances
+//! it by one step.
+
+use std::sync::{Mutex, PoisonError};
+
+use aerobot_systems::clock::Clock;
+use aerobot_systems::dynamics::state_vector::StateVector;
+use aerobot_systems::environment::EnvironmentModel;
+use aerobot_systems::fault::{Fault, FaultSlot};
+use aerobot_systems::integration::{Equations, Integrator, StepFailure, Trajectory};
+use bevy_ecs::resource::Resource;
+use bevy_ecs::schedule::Schedule;
+use bevy_ecs::world::World;
+
+use crate::world::{Discontinuity, Edges};
+
+/// The Evaluate schedule with what carries states to and from it.
+pub struct Evaluation {
+    /// The Evaluate schedule.
+    pub(crate) schedule: Schedule,
+    /// Gathers and scatters states.
+    pub(crate) state: StateVector,
+}
+
+impl Evaluation {
+    /// Runs Evaluate on the components as they are.
+    ///
+    /// # Errors
+    /// The first fault that a system reported.
+    pub fn run(&mut self, world: &mut World) -> Result<(), Fault> {
+        self.schedule.run(world);
+        match world.resource_mut::<FaultSlot>().take() {
+            None => Ok(()),
+            Some(fault) => Err(fault),
+        }
+    }
+}
+
+/// A world seen as y' = f(t, y).
+pub struct WorldEquations<'a> {
+    /// The world.
+    pub world: &'a mut World,
+    /// Its Evaluate schedule.
+    pub evaluation: &'a mut Evaluation,
+}
+
+impl Equations for WorldEquations<'_> {
+    fn rates(&mut self, time_s: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Fault> {
+        self.world.resource_mut::<Clock>().time_s = time_s;
+        self.evaluation.state.scatter(self.world, state);
+        self.evaluation.run(self.world)?;
+        self.evaluation.state.gather_rates(self.world, state, rates);
+        Ok(())
+    }
+
+    fn accept(&mut self, state: &mut [f64], rates: &mut [f64]) {
+        self.evaluation.state.recentre(self.world, state, rates);
+    }
+}
+
+/// What the integration of one run consists of.
+pub struct Integration {
+    /// The world's equations.
+    pub evaluation: Evaluation,
+    /// The method.
+    pub integrator: Box<dyn Integrator>,
+    /// The state on its way.
+    pub trajectory: Trajectory,
+    /// Where the next step must end at the latest, s.
+    pub limit_s: f64,
+    /// Why the last step could not be taken.
+    pub failure: Option<StepFailure>,
+}
+
+/// Holds the [`Integration`] of a world; taken out while it works on the world.
+#[derive(Resource)]
+pub struct IntegrationSlot(Mutex<Option<Box<Integration>>>);
+
+impl IntegrationSlot {
+    /// A slot that holds `integration`.
+    #[must_use]
+    pub fn new(integration: Integration) -> Self {
+        Self(Mutex::new(Some(Box::new(integration))))
+    }
+
+    fn take(&self) -> Option<Box<Integration>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    fn put(&self, integration: Box<Integration>) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(integration);
+    }
+}
+
+/// Works on a world with its integration taken out; `None` if there is none.
+pub fn with_integration<R>(
+    world: &mut World,
+    work: impl FnOnce(&mut World, &mut Integration) -> R,
+) -> Option<R> {
+    let mut integration = world.get_resource::<IntegrationSlot>()?.take()?;
+    let result = work(world, &mut integration);
+    world.resource::<IntegrationSlot>().put(integration);
+    Some(result)
+}
+
+/// The system of [`Phase::Integrate`](crate::schedule::Phase): one accepted step, or none where the
+/// limit is the present.
+pub fn integrate(world: &mut World) {
+    with_integration(world, |world, integration| {
+        integration.failure = advance(world, integration).err();
+        if integration.failure.is_some() {
+            restore(world, integration);
+        }
+    });
+}
+
+/// Leaves the last accepted state in the components after a step that failed.
+fn restore(world: &mut World, integration: &mut Integration) {
+    let Integration {
+        evaluation,
+        trajectory,
+        ..
+    } = integration;
+    world.resource_mut::<Clock>().time_s = trajectory.time_s;
+    evaluation.state.scatter(world, &trajectory.state);
+    // A state that could be evaluated once can be again; the initial one may be at fault itself.
+    let _ = evaluation.run(world);
+}
+
+fn advance(world: &mut World, integration: &mut Integration) -> Result<(), StepFailure> {
+    let Integration {
+        evaluation,
+        integrator,
+        trajectory,
+        limit_s,
+        ..
+    } = integration;
+    if std::mem::take(&mut world.resource_mut::<Discontinuity>().0) {
+        evaluation.state.gather(world, &mut trajectory.state);
+        trajectory.rates_are_current = false;
+    }
+    begin_interval(world, trajectory);
+    if trajectory.time_s < *limit_s {
+        world.resource_mut::<Clock>().interval_start_s = trajectory.time_s;
+        let mut equations = WorldEquations { world, evaluation };
+        integrator.step(&mut equations, trajectory, *limit_s)?;
+        begin_interval(world, trajectory);
+    }
+    // On an edge the accepted state is seen with what holds from the edge on.
+    trajectory.refresh(&mut WorldEquations { world, evaluation })
+}
+
+/// Enters the interval that starts at the present, if the present is an edge.
+fn begin_interval(world: &mut World, trajectory: &mut Trajectory) {
+    let time_s = trajectory.time_s;
+    if world.resource_mut::<Edges>().pass(time_s) {
+        world.resource_mut::<Clock>().interval_start_s = time_s;
+        world
+            .resource_mut::<EnvironmentModel>()
+            .wind
+            .begin_interval(time_s);
+        trajectory.rates_are_current = false;
+    }
+}

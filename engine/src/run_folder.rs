@@ -1,0 +1,208 @@
+//! A run into a folder: the scene as run, the rows as they come, the summary and the timing.
+
+use std::fmt;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use rustix::time::{ClockId, clock_gettime};
+use serde::Serialize;
+
+use crate::plugin::Simulator;
+use crate::recording::csv_sink::CsvSink;
+use crate::recording::summary::{Summary, Timing};
+use crate::scene::source::{apply, parse_override};
+use crate::scene::{Scene, SceneError};
+use crate::simulation::Simulation;
+
+/// The files that a run writes, besides the tables of its scene.
+const FILES: [&str; 6] = [
+    "scene.ron",
+    "states.csv",
+    "tethers.csv",
+    "channels.csv",
+    "summary.json",
+    "timing.json",
+];
+
+/// Where a run goes.
+#[derive(Clone, Debug)]
+pub struct Destination {
+    /// The folder.
+    pub folder: PathBuf,
+    /// Whether a folder that exists is written into.
+    pub overwrite: bool,
+}
+
+/// Why nothing was run.
+#[derive(Debug)]
+pub enum RunError {
+    /// The scene is refused.
+    Scene(SceneError),
+    /// The folder exists.
+    Exists(PathBuf),
+    /// The file system refused something before the run.
+    Io(PathBuf, io::Error),
+}
+
+impl fmt::Display for RunError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Scene(error) => error.fmt(formatter),
+            Self::Exists(folder) => write!(
+                formatter,
+                "error: the output folder `{}` exists\n  = help: name another with `--out`, or \
+                 overwrite its results with `--force`",
+                folder.display()
+            ),
+            Self::Io(path, error) => {
+                write!(
+                    formatter,
+                    "error: cannot write `{}`: {error}",
+                    path.display()
+                )
+            }
+        }
+    }
+}
+
+impl std::error::Error for RunError {}
+
+/// What a run into a folder gives back.
+#[derive(Clone, Debug)]
+pub struct FinishedRun {
+    /// The summary, as in `summary.json`.
+    pub summary: Summary,
+    /// The timing, as in `timing.json`.
+    pub timing: Timing,
+}
+
+/// Runs a scene into a folder; `progress` hears of every accepted step's time in s.
+///
+/// # Errors
+/// Why nothing was run; then nothing was written. A run that stops before its end is not an error
+/// here: its summary says so, and what was recorded is kept.
+pub fn run_into(
+    simulator: &Simulator,
+    scene: &Scene,
+    destination: &Destination,
+    progress: &mut dyn FnMut(f64),
+) -> Result<FinishedRun, RunError> {
+    let folder = &destination.folder;
+    if folder.exists() && !destination.overwrite {
+        return Err(RunError::Exists(folder.clone()));
+    }
+    let simulation = simulator.build(scene).map_err(RunError::Scene)?;
+    let as_run = scene_as_run(scene).map_err(RunError::Scene)?;
+    prepare_folder(folder, &as_run)?;
+    record(simulation, folder, progress).map_err(|error| RunError::Io(folder.clone(), error))
+}
+
+fn record(
+    mut simulation: Simulation,
+    folder: &Path,
+    progress: &mut dyn FnMut(f64),
+) -> io::Result<FinishedRun> {
+    let (wall, cpu) = (Instant::now(), thread_cpu_time());
+    let mut sink = CsvSink::create(folder)?;
+    let mut summary = simulation.run(&mut sink, progress);
+    let flushed = sink.flush();
+    if let (Err(error), None) = (&flushed, &summary.stopped) {
+        summary.stop(format!("the results cannot be written: {error}"));
+    }
+    let cpu_s = (thread_cpu_time() - cpu).as_secs_f64();
+    let timing = Timing {
+        wall_s: wall.elapsed().as_secs_f64(),
+        cpu_s,
+        simulated_s_per_cpu_s: if cpu_s > 0.0 {
+            summary.simulated_s / cpu_s
+        } else {
+            0.0
+        },
+    };
+    write_json(&folder.join("summary.json"), &summary)?;
+    write_json(&folder.join("timing.json"), &timing)?;
+    Ok(FinishedRun { summary, timing })
+}
+
+/// CPU time of the calling thread.
+#[must_use]
+pub fn thread_cpu_time() -> Duration {
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    Duration::new(
+        time.tv_sec.unsigned_abs(),
+        u32::try_from(time.tv_nsec).unwrap_or(0),
+    )
+}
+
+/// The text of a scene as it is run, and the tables that stand beside it.
+struct SceneAsRun {
+    text: String,
+    tables: Vec<(String, String)>,
+}
+
+/// Every override and the seed are in the text, and tables are named as they stand in the folder.
+fn scene_as_run(scene: &Scene) -> Result<SceneAsRun, SceneError> {
+    let mut arguments = vec![format!("run.seed={}", scene.run.seed)];
+    let mut tables: Vec<(String, String)> = Vec::new();
+    for (path, file) in scene.tables.paths(&scene.environment) {
+        let plain = Path::new(&file).file_name().map_or_else(
+            || "table.csv".to_owned(),
+            |name| name.to_string_lossy().into_owned(),
+        );
+        let content = scene.tables.files.get(&file).cloned().unwrap_or_default();
+        let taken = |name: &str| {
+            FILES.contains(&name)
+                || tables
+                    .iter()
+                    .any(|(other, text)| other == name && *text != content)
+        };
+        let mut name = plain.clone();
+        let mut number = 2;
+        while taken(&name) {
+            name = format!("{number}-{plain}");
+            number += 1;
+        }
+        arguments.push(format!("{path}={name:?}"));
+        tables.push((name, content));
+    }
+    let overrides = arguments
+        .iter()
+        .map(|argument| parse_override(argument).map_err(SceneError::plain))
+        .collect::<Result<Vec<_>, _>>()?;
+    let edited = apply(scene.source.text(), &overrides)
+        .map_err(|diagnostic| SceneError::plain(diagnostic.message))?;
+    Ok(SceneAsRun {
+        text: edited.text().to_owned(),
+        tables,
+    })
+}
+
+fn prepare_folder(folder: &Path, scene: &SceneAsRun) -> Result<(), RunError> {
+    let at = |path: &Path| {
+        let path = path.to_owned();
+        move |error| RunError::Io(path, error)
+    };
+    fs::create_dir_all(folder).map_err(at(folder))?;
+    for file in FILES {
+        let path = folder.join(file);
+        match fs::remove_file(&path) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(at(&path)(error)),
+            _ => {}
+        }
+    }
+    let path = folder.join("scene.ron");
+    fs::write(&path, &scene.text).map_err(at(&path))?;
+    for (name, text) in &scene.tables {
+        let path = folder.join(name);
+        fs::write(&path, text).map_err(at(&path))?;
+    }
+    Ok(())
+}
+
+fn write_json(path: &Path, value: &impl Serialize) -> io::Result<()> {
+    let mut text = serde_json::to_string_pretty(value)?;
+    text.push('\n');
+    fs::write(path, text)
+}

@@ -1,0 +1,118 @@
+//! What happens in which order: the table of contents of the simulator.
+//!
+//! **Step**, once per accepted step:
+//! 1. [`Phase::Control`]: controllers sample and hold, random processes advance.
+//! 2. [`Phase::Integrate`]: one exclusive system; it runs Evaluate once per stage.
+//! 3. [`Phase::Constrain`]: what changes the state at once (latches, cuts).
+//! 4. [`Phase::Observe`]: instruments and built-in channels look at the accepted state.
+//! 5. [`Phase::Record`]: rows are made of what is due.
+//!
+//! **Evaluate**, once per stage and once for the accepted state:
+//! 1. [`Phase::Prepare`]: accumulators are cleared, anchors and attachments placed, segments measured.
+//! 2. [`Phase::Environment`]: air density and wind at everything that asks for them; added mass.
+//! 3. [`Phase::Forces`]: every law adds to forces, torques and segment loads.
+//! 4. [`Phase::Dynamics`]: segment loads go to their ends, and everything is accelerated.
+//!
+//! Within a phase, systems run in the order in which they were registered, so that sums have the same
+//! bits under every shuffle; an ambiguity inside one registration is an error.
+
+use bevy_ecs::schedule::{
+    IntoScheduleConfigs, LogLevel, Schedule, ScheduleBuildSettings, ScheduleLabel, SystemSet,
+};
+use bevy_ecs::world::World;
+
+/// A place in the order of a step.
+#[derive(Clone, Copy, Debug, Hash, PartialEq, Eq, SystemSet)]
+pub enum Phase {
+    /// Step: controllers sample and hold, random processes advance.
+    Control,
+    /// Step: the state moves on by one accepted step.
+    Integrate,
+    /// Step: what changes the state at once.
+    Constrain,
+    /// Step: instruments and channels look at the accepted state.
+    Observe,
+    /// Step: rows are made of what is due.
+    Record,
+    /// Evaluate: accumulators, anchors, attachments, segments.
+    Prepare,
+    /// Evaluate: air and wind.
+    Environment,
+    /// Evaluate: everything that pushes or pulls.
+    Forces,
+    /// Evaluate: accelerations.
+    Dynamics,
+}
+
+/// The phases of a step.
+pub const STEP: [Phase; 5] = [
+    Phase::Control,
+    Phase::Integrate,
+    Phase::Constrain,
+    Phase::Observe,
+    Phase::Record,
+];
+
+/// The phases of an evaluation.
+pub const EVALUATE: [Phase; 4] = [
+    Phase::Prepare,
+    Phase::Environment,
+    Phase::Forces,
+    Phase::Dynamics,
+];
+
+/// Label of the schedule that runs once per accepted step.
+#[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Step;
+
+/// Label of the schedule that runs once per stage.
+#[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Evaluate;
+
+/// The place of one registration in the total order.
+#[derive(Clone, Copy, Debug, Hash, PartialEq, Eq, SystemSet)]
+pub(crate) struct Registered(usize);
+
+/// One call of [`Simulator::add_systems`](crate::plugin::Simulator::add_systems).
+pub(crate) struct Registration {
+    pub(crate) phase: Phase,
+    pub(crate) add: Box<dyn Fn(&mut Schedule, Registered) + Send + Sync>,
+}
+
+/// Builds the schedule `label` of `phases` from all registrations, checked for ambiguities.
+///
+/// # Errors
+/// The text of an ambiguity or of a cycle.
+pub(crate) fn build(
+    label: impl ScheduleLabel,
+    phases: &[Phase],
+    registrations: &[Registration],
+    shuffle_seed: Option<u64>,
+    world: &mut World,
+) -> Result<Schedule, String> {
+    let mut schedule = Schedule::new(label);
+    schedule.set_build_settings(ScheduleBuildSettings {
+        ambiguity_detection: LogLevel::Error,
+        shuffle_seed,
+        ..ScheduleBuildSettings::default()
+    });
+    let mut before: Option<Registered> = None;
+    for phase in phases {
+        for (index, registration) in registrations.iter().enumerate() {
+            if registration.phase != *phase {
+                continue;
+            }
+            let set = Registered(index);
+            schedule.configure_sets(set.in_set(*phase));
+            if let Some(before) = before {
+                schedule.configure_sets(set.after(before));
+            }
+            (registration.add)(&mut schedule, set);
+            before = Some(set);
+        }
+    }
+    match schedule.initialize(world) {
+        Ok(_) => Ok(schedule),
+        Err(error) => Err(error.to_string(schedule.graph(), world)),
+    }
+}

@@ -1,0 +1,115 @@
+//! The commands: arguments in, messages and an exit code out.
+//!
+//! Exit codes: 0 done, 2 refused (nothing written), 3 stopped (what was recorded is kept).
+
+mod check;
+mod run;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use aerobot_engine::plugin::{Plugin, Simulator};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Nothing was run.
+const REFUSED: u8 = 2;
+/// The run stopped before its end.
+const STOPPED: u8 = 3;
+
+/// A flight simulator for tethered balloon systems in the atmosphere of Venus.
+#[derive(Parser)]
+#[command(name = "aerobot", version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run a scene and write its results into a folder.
+    Run(RunArguments),
+    /// Check scenes and print what they contain, without running them.
+    Check(CheckArguments),
+}
+
+/// What every command that reads a scene takes.
+#[derive(Args)]
+struct SceneArguments {
+    /// Override a field of the scene: `--set entities.tether.Tether.nodes=20`; the value is RON.
+    #[arg(long = "set", value_name = "PATH=RON")]
+    set: Vec<String>,
+    /// Formulation of the tethers' dynamics.
+    #[arg(long, value_enum)]
+    formulation: Option<FormulationName>,
+    /// Seed of the random draws.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Simulated time at which to end, s.
+    #[arg(long, value_name = "SECONDS")]
+    until: Option<f64>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum FormulationName {
+    /// Point masses joined by springs and dampers.
+    LumpedMass,
+    /// Chains of rigid links.
+    Denoc,
+}
+
+#[derive(Args)]
+struct RunArguments {
+    /// The scene, a RON file.
+    scene: PathBuf,
+    #[command(flatten)]
+    overrides: SceneArguments,
+    /// Folder for the results; `runs/<name of the scene>` unless given.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Write into a folder that exists.
+    #[arg(long)]
+    force: bool,
+    /// Print nothing but errors.
+    #[arg(long)]
+    quiet: bool,
+}
+
+#[derive(Args)]
+struct CheckArguments {
+    /// The scenes, RON files.
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    overrides: SceneArguments,
+}
+
+impl SceneArguments {
+    /// All overrides as `PATH=RON`, those of `--set` first.
+    fn as_overrides(&self) -> Vec<String> {
+        let mut overrides = self.set.clone();
+        if let Some(formulation) = self.formulation {
+            let name = match formulation {
+                FormulationName::LumpedMass => "LumpedMass",
+                FormulationName::Denoc => "Denoc",
+            };
+            overrides.push(format!("run.formulation={name}"));
+        }
+        overrides.extend(self.seed.map(|seed| format!("run.seed={seed}")));
+        overrides.extend(self.until.map(|until| format!("run.duration_s={until:?}")));
+        overrides
+    }
+}
+
+/// Runs the command line with plugins beside the built-in ones.
+#[must_use]
+pub fn main(plugins: &[&dyn Plugin]) -> ExitCode {
+    let arguments = Arguments::parse();
+    let mut simulator = Simulator::new();
+    for plugin in plugins {
+        simulator.add_plugin(*plugin);
+    }
+    match arguments.command {
+        Command::Run(arguments) => run::run(&simulator, &arguments),
+        Command::Check(arguments) => check::check(&simulator, &arguments),
+    }
+}

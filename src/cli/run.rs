@@ -1,0 +1,94 @@
+//! `aerobot run`.
+
+use std::io::IsTerminal;
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use aerobot_engine::plugin::Simulator;
+use aerobot_engine::recording::summary::{Summary, Timing};
+use aerobot_engine::run_folder::{Destination, run_into};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::{REFUSED, RunArguments, STOPPED};
+
+pub(super) fn run(simulator: &Simulator, arguments: &RunArguments) -> ExitCode {
+    let scene = match simulator.load(&arguments.scene, &arguments.overrides.as_overrides()) {
+        Ok(scene) => scene,
+        Err(error) => {
+            eprintln!("{error}");
+            return ExitCode::from(REFUSED);
+        }
+    };
+    let folder =
+        arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(&scene.name));
+    let destination = Destination { folder, overwrite: arguments.force };
+    let bar = progress_bar(scene.run.duration_s, arguments.quiet);
+    let finished = run_into(simulator, &scene, &destination, &mut |time_s| {
+        bar.set_position(milliseconds(time_s));
+    });
+    bar.finish_and_clear();
+    let finished = match finished {
+        Ok(finished) => finished,
+        Err(error) => {
+            eprintln!("{error}");
+            return ExitCode::from(REFUSED);
+        }
+    };
+    for warning in &finished.summary.warnings {
+        eprintln!("warning: {warning}");
+    }
+    if !arguments.quiet {
+        println!("{}", line(&finished.summary, &finished.timing, &destination.folder));
+    }
+    match &finished.summary.stopped {
+        None => ExitCode::SUCCESS,
+        Some(stop) => {
+            let who = stop.entity.as_ref().map_or_else(String::new, |name| format!(" `{name}`:"));
+            eprintln!("error: stopped at {} s:{who} {}", stop.time_s, stop.reason);
+            eprintln!("  = note: what was recorded is in `{}`", destination.folder.display());
+            ExitCode::from(STOPPED)
+        }
+    }
+}
+
+fn milliseconds(time_s: f64) -> u64 {
+    (time_s * 1e3) as u64
+}
+
+/// A bar of simulated time on a terminal, nothing elsewhere.
+fn progress_bar(duration_s: f64, quiet: bool) -> ProgressBar {
+    if quiet || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(milliseconds(duration_s));
+    let style = ProgressStyle::with_template(
+        "{bar:40} {percent:>3} % of simulated time, {eta} left",
+    );
+    if let Ok(style) = style {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}
+
+/// The one line at the end.
+fn line(summary: &Summary, timing: &Timing, folder: &Path) -> String {
+    let stable = match (summary.stable_step_s, &summary.stiffest_segment) {
+        (Some(step_s), Some(segment)) => format!(", stable step {step_s:.3e} s (`{segment}`)"),
+        _ => String::new(),
+    };
+    format!(
+        "{}: {} s simulated in {:.3} s ({:.0} times real time); {}, {} steps, {} rejected, \
+         {} evaluations{stable}; results in `{}`",
+        summary.scene,
+        summary.simulated_s,
+        timing.wall_s,
+        if timing.wall_s > 0.0 { summary.simulated_s / timing.wall_s } else { 0.0 },
+        summary.integrator,
+        summary.steps,
+        summary.rejected_steps,
+        summary.evaluations,
+        folder.display()
+    )
+}
