@@ -49,9 +49,10 @@ impl Simulation {
         let Some(entity) = world.resource::<SceneEntities>().get(name) else {
             return String::new();
         };
-        if let (Some(tether), Some(parts)) =
-            (world.get::<Tether>(entity), world.get::<TetherParts>(entity))
-        {
+        if let (Some(tether), Some(parts)) = (
+            world.get::<Tether>(entity),
+            world.get::<TetherParts>(entity),
+        ) {
             return format!(
                 ": {} m from `{}` to `{}`, {} nodes, {} segments, {:.6} kg",
                 tether.length_m,
@@ -73,9 +74,20 @@ impl Simulation {
         }
         if let Some(position) = world.get::<Position>(entity) {
             let place = position.0;
-            let verb = if world.get::<Anchor>(entity).is_some() { "held" } else { "starts" };
-            facts.push(format!("{verb} at ({}, {}, {}) m", place.x, place.y, place.z));
+            let verb = if world.get::<Anchor>(entity).is_some() {
+                "held"
+            } else {
+                "starts"
+            };
+            facts.push(format!(
+                "{verb} at ({}, {}, {}) m",
+                place.x, place.y, place.z
+            ));
         }
-        if facts.is_empty() { String::new() } else { format!(": {}", facts.join(", ")) }
+        if facts.is_empty() {
+            String::new()
+        } else {
+            format!(": {}", facts.join(", "))
+        }
     }
 }

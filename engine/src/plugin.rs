@@ -97,8 +97,38 @@ impl Simulator {
         C: IntoScheduleConfigs<ScheduleSystem, M>,
         M: 'static,
     {
+        self.add_systems_if(phase, |_| true, systems)
+    }
+
+    /// As [`Simulator::add_systems`], for scenes with a component of type `S` only: a system without
+    /// work still costs some 20 ns in every evaluation.
+    pub fn add_systems_for<S, C, M>(
+        &mut self,
+        phase: Phase,
+        systems: impl Fn() -> C + Send + Sync + 'static,
+    ) -> &mut Self
+    where
+        S: SceneComponent,
+        C: IntoScheduleConfigs<ScheduleSystem, M>,
+        M: 'static,
+    {
+        self.add_systems_if(phase, |scene| scene.with::<S>().next().is_some(), systems)
+    }
+
+    /// As [`Simulator::add_systems`], for scenes that fulfil a condition only.
+    pub fn add_systems_if<C, M>(
+        &mut self,
+        phase: Phase,
+        needed: impl Fn(&Scene) -> bool + Send + Sync + 'static,
+        systems: impl Fn() -> C + Send + Sync + 'static,
+    ) -> &mut Self
+    where
+        C: IntoScheduleConfigs<ScheduleSystem, M>,
+        M: 'static,
+    {
         self.systems.push(Registration {
             phase,
+            needed: Box::new(needed),
             add: Box::new(move |schedule, set| {
                 schedule.add_systems(systems().in_set(set));
             }),

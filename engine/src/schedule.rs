@@ -21,6 +21,9 @@ use bevy_ecs::schedule::{
 };
 use bevy_ecs::world::World;
 
+use crate::plugin::Simulator;
+use crate::scene::Scene;
+
 /// A place in the order of a step.
 #[derive(Clone, Copy, Debug, Hash, PartialEq, Eq, SystemSet)]
 pub enum Phase {
@@ -76,30 +79,32 @@ pub(crate) struct Registered(usize);
 /// One call of [`Simulator::add_systems`](crate::plugin::Simulator::add_systems).
 pub(crate) struct Registration {
     pub(crate) phase: Phase,
+    pub(crate) needed: Box<dyn Fn(&Scene) -> bool + Send + Sync>,
     pub(crate) add: Box<dyn Fn(&mut Schedule, Registered) + Send + Sync>,
 }
 
-/// Builds the schedule `label` of `phases` from all registrations, checked for ambiguities.
+/// Builds the schedule `label` of `phases` from all registrations that `scene` needs, checked for
+/// ambiguities.
 ///
 /// # Errors
 /// The text of an ambiguity or of a cycle.
 pub(crate) fn build(
     label: impl ScheduleLabel,
     phases: &[Phase],
-    registrations: &[Registration],
-    shuffle_seed: Option<u64>,
+    simulator: &Simulator,
+    scene: &Scene,
     world: &mut World,
 ) -> Result<Schedule, String> {
     let mut schedule = Schedule::new(label);
     schedule.set_build_settings(ScheduleBuildSettings {
         ambiguity_detection: LogLevel::Error,
-        shuffle_seed,
+        shuffle_seed: simulator.shuffle_seed,
         ..ScheduleBuildSettings::default()
     });
     let mut before: Option<Registered> = None;
     for phase in phases {
-        for (index, registration) in registrations.iter().enumerate() {
-            if registration.phase != *phase {
+        for (index, registration) in simulator.systems.iter().enumerate() {
+            if registration.phase != *phase || !(registration.needed)(scene) {
                 continue;
             }
             let set = Registered(index);

@@ -7,17 +7,20 @@ use aerobot_components::state::{AngularVelocity, Attitude, Position, StateIndex,
 use aerobot_systems::clock::Clock;
 use aerobot_systems::dynamics::state_vector::StateVector;
 use aerobot_systems::environment::EnvironmentModel;
+use aerobot_systems::fault::Fault;
 use aerobot_systems::forces::body_drag::BeyondMorrison;
 use aerobot_systems::integration::dormand_prince::DormandPrince;
 use aerobot_systems::integration::runge_kutta4::RungeKutta4;
-use aerobot_systems::integration::{Cost, Integrator, StepFailure, Trajectory};
+use aerobot_systems::integration::{Cost, Equations, Integrator, StepFailure, Trajectory};
 use bevy_ecs::query::QueryState;
 use bevy_ecs::schedule::Schedule;
 use bevy_ecs::world::World;
 
 use crate::builtin::channels::find_supports;
 use crate::builtin::recorder::{Recorder, segment_name};
-use crate::evaluation::{Evaluation, Integration, IntegrationSlot, with_integration};
+use crate::evaluation::{
+    Evaluation, Integration, IntegrationSlot, WorldEquations, with_integration,
+};
 use crate::placement;
 use crate::plugin::Simulator;
 use crate::recording::frame::ResultSink;
@@ -62,27 +65,12 @@ impl Simulator {
     pub fn build(&self, scene: &Scene) -> Result<Simulation, SceneError> {
         let mut world = build_world(self, scene).map_err(|error| scene.refuse(error))?;
         let layout = lay_out_state(&mut world);
-        let schedule = |label_phases: &[_], world: &mut World, evaluate: bool| {
-            if evaluate {
-                schedule::build(
-                    Evaluate,
-                    label_phases,
-                    &self.systems,
-                    self.shuffle_seed,
-                    world,
-                )
-            } else {
-                schedule::build(Step, label_phases, &self.systems, self.shuffle_seed, world)
-            }
-            .map_err(|text| {
-                SceneError::plain(format_args!("the systems cannot be ordered: {text}"))
-            })
-        };
         let mut evaluation = Evaluation {
-            schedule: schedule(&EVALUATE, &mut world, true)?,
+            schedule: schedule::build(Evaluate, &EVALUATE, self, scene, &mut world)
+                .map_err(unordered)?,
             state: StateVector::new(&mut world, layout),
         };
-        let step = schedule(&STEP, &mut world, false)?;
+        let step = schedule::build(Step, &STEP, self, scene, &mut world).map_err(unordered)?;
         placement::place(&mut world, &mut evaluation, scene)
             .map_err(|error| scene.refuse(error))?;
         find_supports(&mut world);
@@ -122,6 +110,12 @@ impl Simulator {
             step_s,
         })
     }
+}
+
+fn unordered(text: String) -> SceneError {
+    SceneError::plain(format_args!(
+        "the systems of the plugins cannot be ordered: {text}"
+    ))
 }
 
 /// The wind of the first interval.
@@ -230,6 +224,36 @@ impl Simulation {
     #[must_use]
     pub fn stable_step(&self) -> &StableStep {
         &self.stable_step
+    }
+
+    /// Runs Evaluate on the components as they are: for measurements, and after changes by hand.
+    ///
+    /// # Errors
+    /// The fault that a system reported.
+    pub fn evaluate(&mut self) -> Result<(), Fault> {
+        with_integration(&mut self.world, |world, integration| {
+            integration.evaluation.run(world)
+        })
+        .unwrap_or(Ok(()))
+    }
+
+    /// Finds the rates of the current state `count` times, as an integrator does: for measurements.
+    ///
+    /// # Errors
+    /// The fault that a system reported.
+    pub fn rates(&mut self, count: usize) -> Result<(), Fault> {
+        with_integration(&mut self.world, |world, integration| {
+            let Integration {
+                evaluation,
+                trajectory,
+                ..
+            } = integration;
+            let mut equations = WorldEquations { world, evaluation };
+            (0..count).try_for_each(|_| {
+                equations.rates(trajectory.time_s, &trajectory.state, &mut trajectory.rates)
+            })
+        })
+        .unwrap_or(Ok(()))
     }
 
     /// The integrator with its settings, in words.

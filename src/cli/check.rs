@@ -20,7 +20,11 @@ pub(super) fn check(simulator: &Simulator, arguments: &CheckArguments) -> ExitCo
             }
         }
     }
-    if refused { ExitCode::from(REFUSED) } else { ExitCode::SUCCESS }
+    if refused {
+        ExitCode::from(REFUSED)
+    } else {
+        ExitCode::SUCCESS
+    }
 }
 
 /// Loads and builds a scene, and says what it contains.

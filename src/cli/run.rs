@@ -20,9 +20,14 @@ pub(super) fn run(simulator: &Simulator, arguments: &RunArguments) -> ExitCode {
             return ExitCode::from(REFUSED);
         }
     };
-    let folder =
-        arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(&scene.name));
-    let destination = Destination { folder, overwrite: arguments.force };
+    let folder = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| Path::new("runs").join(&scene.name));
+    let destination = Destination {
+        folder,
+        overwrite: arguments.force,
+    };
     let bar = progress_bar(scene.run.duration_s, arguments.quiet);
     let finished = run_into(simulator, &scene, &destination, &mut |time_s| {
         bar.set_position(milliseconds(time_s));
@@ -39,14 +44,23 @@ pub(super) fn run(simulator: &Simulator, arguments: &RunArguments) -> ExitCode {
         eprintln!("warning: {warning}");
     }
     if !arguments.quiet {
-        println!("{}", line(&finished.summary, &finished.timing, &destination.folder));
+        println!(
+            "{}",
+            line(&finished.summary, &finished.timing, &destination.folder)
+        );
     }
     match &finished.summary.stopped {
         None => ExitCode::SUCCESS,
         Some(stop) => {
-            let who = stop.entity.as_ref().map_or_else(String::new, |name| format!(" `{name}`:"));
+            let who = stop
+                .entity
+                .as_ref()
+                .map_or_else(String::new, |name| format!(" `{name}`:"));
             eprintln!("error: stopped at {} s:{who} {}", stop.time_s, stop.reason);
-            eprintln!("  = note: what was recorded is in `{}`", destination.folder.display());
+            eprintln!(
+                "  = note: what was recorded is in `{}`",
+                destination.folder.display()
+            );
             ExitCode::from(STOPPED)
         }
     }
@@ -62,9 +76,8 @@ fn progress_bar(duration_s: f64, quiet: bool) -> ProgressBar {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(milliseconds(duration_s));
-    let style = ProgressStyle::with_template(
-        "{bar:40} {percent:>3} % of simulated time, {eta} left",
-    );
+    let style =
+        ProgressStyle::with_template("{bar:40} {percent:>3} % of simulated time, {eta} left");
     if let Ok(style) = style {
         bar.set_style(style);
     }
@@ -84,7 +97,11 @@ fn line(summary: &Summary, timing: &Timing, folder: &Path) -> String {
         summary.scene,
         summary.simulated_s,
         timing.wall_s,
-        if timing.wall_s > 0.0 { summary.simulated_s / timing.wall_s } else { 0.0 },
+        if timing.wall_s > 0.0 {
+            summary.simulated_s / timing.wall_s
+        } else {
+            0.0
+        },
         summary.integrator,
         summary.steps,
         summary.rejected_steps,

@@ -28,11 +28,17 @@ impl Plugin for AerodynamicsPlugin {
             .register_component::<Drag>()
             .add_check(check_spheres)
             .add_setup(set_up)
-            .add_systems(Phase::Environment, || added_mass)
-            .add_systems(Phase::Forces, || buoyancy)
-            .add_systems(Phase::Forces, || constant_drag)
-            .add_systems(Phase::Forces, || sphere_drag);
+            .add_systems_for::<AddedMass, _, _>(Phase::Environment, || added_mass)
+            .add_systems_for::<Buoyancy, _, _>(Phase::Forces, || buoyancy)
+            .add_systems_for::<Drag, _, _>(Phase::Forces, || constant_drag)
+            .add_systems_if(Phase::Forces, has_sphere_drag, || sphere_drag);
     }
+}
+
+fn has_sphere_drag(scene: &Scene) -> bool {
+    scene
+        .with::<Drag>()
+        .any(|(_, drag)| matches!(drag, Drag::Morrison))
 }
 
 fn check_spheres(scene: &Scene, report: &mut FieldReport) {

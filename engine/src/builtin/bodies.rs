@@ -36,7 +36,7 @@ impl Plugin for BodiesPlugin {
             .add_check(check_inertia)
             .add_setup(set_up)
             .add_systems(Phase::Prepare, || clear_accumulators)
-            .add_systems(Phase::Prepare, || move_anchors)
+            .add_systems_for::<Moving, _, _>(Phase::Prepare, || move_anchors)
             .add_systems(Phase::Forces, || weight);
     }
 }

@@ -42,14 +42,14 @@ impl Plugin for ChannelsPlugin {
         simulator
             .add_check(check_names)
             .add_setup(set_up)
-            .add_systems(Phase::Dynamics, || nonconservative_power)
+            .add_systems_if(Phase::Dynamics, records_energy, || nonconservative_power)
             .add_systems(Phase::Observe, || find_due)
             .add_systems(Phase::Observe, || accelerate_attachments)
             .add_systems(Phase::Observe, || airspeed)
             .add_systems(Phase::Observe, || attitude)
             .add_systems(Phase::Observe, || swing)
             .add_systems(Phase::Observe, || attachment_tension)
-            .add_systems(Phase::Observe, || energy);
+            .add_systems_if(Phase::Observe, records_energy, || energy);
     }
 }
 
@@ -62,6 +62,11 @@ fn known_channels(entity: &SceneEntity) -> &'static [&'static str] {
     } else {
         &[]
     }
+}
+
+/// Whether any channel of the whole system is recorded.
+fn records_energy(scene: &Scene) -> bool {
+    !wanted(&scene.run.record.channels, "system", &SYSTEM_CHANNELS).is_empty()
 }
 
 /// Says whether built-in channels are due at the time of the accepted state.

@@ -41,12 +41,18 @@ impl Plugin for TethersPlugin {
             .add_systems(Phase::Prepare, || {
                 (place_attachments, segment_geometry).chain()
             })
-            .add_systems(Phase::Forces, || spring)
-            .add_systems(Phase::Forces, || segment_drag)
-            .add_systems(Phase::Dynamics, || {
+            .add_systems_for::<Tether, _, _>(Phase::Forces, || spring)
+            .add_systems_if(Phase::Forces, has_drag, || segment_drag)
+            .add_systems_for::<Tether, _, _>(Phase::Dynamics, || {
                 (load_points, load_carriers, accelerate_nodes).chain()
             });
     }
+}
+
+fn has_drag(scene: &Scene) -> bool {
+    scene
+        .with::<Tether>()
+        .any(|(_, tether)| tether.drag.is_some())
 }
 
 fn check_ends(scene: &Scene, report: &mut FieldReport) {

@@ -31,18 +31,19 @@ impl PointArrays {
     }
 }
 
-/// Finds direction, length, rate, midpoint and mean velocity of every segment.
+/// Finds direction, length, rate, midpoint and mean velocity of every segment, and clears its load.
 pub fn segment_geometry(
     mut arrays: ResMut<PointArrays>,
     points: Query<(&TetherPoint, &Position, &Velocity)>,
-    mut segments: Query<(&Segment, &mut SegmentGeometry)>,
+    mut segments: Query<(&Segment, &mut SegmentGeometry, &mut SegmentLoad)>,
 ) {
     let arrays = &mut *arrays;
     for (point, position, velocity) in &points {
         arrays.position_m[point.index] = position.0;
         arrays.velocity_m_s[point.index] = velocity.0;
     }
-    for (segment, mut geometry) in &mut segments {
+    for (segment, mut geometry, mut load) in &mut segments {
+        *load.bypass_change_detection() = SegmentLoad::default();
         let index = segment.from_point;
         let ends = &arrays.position_m[index..index + 2];
         let speeds = &arrays.velocity_m_s[index..index + 2];

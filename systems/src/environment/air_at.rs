@@ -8,6 +8,7 @@ use bevy_ecs::query::Without;
 use bevy_ecs::system::{Query, Res, ResMut};
 
 use super::EnvironmentModel;
+use super::atmosphere::Atmosphere;
 use crate::fault::FaultSlot;
 
 /// Finds the air at bodies.
@@ -27,6 +28,20 @@ pub fn air_at_segments(
     mut faults: ResMut<FaultSlot>,
     mut segments: Query<(Entity, &SegmentGeometry, &mut Air)>,
 ) {
+    let (atmosphere, wind) = (&environment.atmosphere, &environment.wind);
+    // Told apart once, not at every segment: the look-up is the hottest of a run.
+    if let (Atmosphere::Table(table), false) = (atmosphere, wind.depends_on_altitude()) {
+        let velocity_m_s = wind.level_velocity_m_s();
+        for (entity, geometry, mut air) in &mut segments {
+            let air = air.bypass_change_detection();
+            air.velocity_m_s = velocity_m_s;
+            match table.density_kg_m3(geometry.midpoint_m.z) {
+                Some(density_kg_m3) => air.density_kg_m3 = density_kg_m3,
+                None => *air = air_at(&environment, geometry.midpoint_m.z, entity, &mut faults),
+            }
+        }
+        return;
+    }
     for (entity, geometry, mut air) in &mut segments {
         *air.bypass_change_detection() =
             air_at(&environment, geometry.midpoint_m.z, entity, &mut faults);
@@ -47,13 +62,20 @@ fn air_at(
             density_kg_m3,
             velocity_m_s,
         },
-        (Err(outside), _) => {
-            faults.report(Some(entity), || outside.to_string());
+        (density, velocity) => {
+            let messages = [
+                density.err().map(|outside| outside.to_string()),
+                velocity.err().map(|outside| outside.to_string()),
+            ];
+            report(messages, entity, faults);
             Air::default()
         }
-        (_, Err(outside)) => {
-            faults.report(Some(entity), || outside.to_string());
-            Air::default()
-        }
+    }
+}
+
+#[cold]
+fn report(messages: [Option<String>; 2], entity: Entity, faults: &mut FaultSlot) {
+    for message in messages.into_iter().flatten() {
+        faults.report(Some(entity), || message);
     }
 }

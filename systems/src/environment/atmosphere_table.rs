@@ -16,6 +16,7 @@
 //! Assumptions: between rows density and pressure are close to exponential. Modes and trim need
 //! the continuous slope, because working altitudes are often rows.
 
+use super::exponential_cells::ExponentialCells;
 use super::knots::{ColumnError, InterpolationError, Knots, check_positive};
 use super::monotone_cubic::MonotoneCubic;
 use super::vira;
@@ -27,6 +28,7 @@ pub struct AtmosphereTable {
     gas: Gas,
     knots: Knots,
     ln_density: MonotoneCubic,
+    density: ExponentialCells,
     ln_pressure: Option<MonotoneCubic>,
     temperature: Option<MonotoneCubic>,
 }
@@ -60,6 +62,7 @@ impl AtmosphereTable {
             .map_err(|error| error.within("temperature_k"))?;
         Ok(Self {
             gas,
+            density: ExponentialCells::new(&knots, &ln_density),
             knots,
             ln_density,
             ln_pressure,
@@ -72,11 +75,13 @@ impl AtmosphereTable {
         let column =
             |index: usize| -> Vec<f64> { vira::ROWS.iter().map(|row| row[index]).collect() };
         let knots = Knots::from_checked(column(0));
+        let ln_density = MonotoneCubic::of_checked_logarithm(&knots, &column(3));
         Self {
+            density: ExponentialCells::new(&knots, &ln_density),
             gas: Gas::CarbonDioxide,
             temperature: Some(MonotoneCubic::from_checked(&knots, &column(1))),
             ln_pressure: Some(MonotoneCubic::of_checked_logarithm(&knots, &column(2))),
-            ln_density: MonotoneCubic::of_checked_logarithm(&knots, &column(3)),
+            ln_density,
             knots,
         }
     }
@@ -102,15 +107,14 @@ impl AtmosphereTable {
     /// Density (kg/m3) at an altitude (m); `None` outside the table.
     #[inline]
     pub fn density_kg_m3(&self, altitude_m: f64) -> Option<f64> {
-        let interval = self.knots.interval(altitude_m)?;
-        Some(libm::exp(self.ln_density.value(interval, altitude_m)))
+        self.density.value(altitude_m)
     }
 
     /// Slope of the density (kg/m3 per m) at an altitude (m); `None` outside the table.
     #[inline]
     pub fn density_slope(&self, altitude_m: f64) -> Option<f64> {
         let interval = self.knots.interval(altitude_m)?;
-        let density_kg_m3 = libm::exp(self.ln_density.value(interval, altitude_m));
+        let density_kg_m3 = self.density.value(altitude_m)?;
         Some(density_kg_m3 * self.ln_density.slope(interval, altitude_m))
     }
 

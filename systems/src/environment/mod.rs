@@ -3,6 +3,7 @@
 pub mod air_at;
 pub mod atmosphere;
 pub mod atmosphere_table;
+pub mod exponential_cells;
 pub mod knots;
 pub mod monotone_cubic;
 pub mod sphere_drag;

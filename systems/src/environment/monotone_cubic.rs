@@ -118,6 +118,35 @@ impl MonotoneCubic {
         piece.c0 + t * (piece.c1 + t * (piece.c2 + t * piece.c3))
     }
 
+    /// The Taylor coefficients (value, first, second / 2, third / 6) of the piece of `interval`
+    /// about `x`.
+    pub(super) fn taylor(&self, interval: usize, x: f64) -> [f64; 4] {
+        let piece = &self.pieces[interval];
+        let t = x - piece.start;
+        [
+            self.value(interval, x),
+            self.slope(interval, x),
+            piece.c2 + 3.0 * piece.c3 * t,
+            piece.c3,
+        ]
+    }
+
+    /// The largest of |s1|, |s2|^(1/2) and |s3|^(1/3) within `interval`, which is `width` wide:
+    /// `s` as [`Self::taylor`] gives them about any of its abscissae.
+    pub(super) fn fastest_rate(&self, interval: usize, width: f64) -> f64 {
+        let piece = &self.pieces[interval];
+        let turn = piece.start - piece.c2 / (3.0 * piece.c3);
+        let inside = (piece.start..piece.start + width).contains(&turn);
+        let turn = if inside { turn } else { piece.start };
+        [piece.start, piece.start + width, turn]
+            .into_iter()
+            .map(|x| {
+                let [_, s1, s2, s3] = self.taylor(interval, x);
+                s1.abs().max(s2.abs().sqrt()).max(libm::cbrt(s3.abs()))
+            })
+            .fold(0.0, f64::max)
+    }
+
     /// The slope dy/dx at `x`, which lies in `interval` as given by [`Knots::interval`].
     ///
     /// # Panics

@@ -199,6 +199,13 @@ impl Wind {
         !self.layered.is_empty()
     }
 
+    /// The part of the velocity (m/s, inertial frame) that does not depend on altitude, within the
+    /// interval begun last.
+    #[inline]
+    pub fn level_velocity_m_s(&self) -> DVec3 {
+        self.level_m_s
+    }
+
     /// Velocity of the air (m/s, inertial frame) at an altitude (m), within the interval begun
     /// last.
     ///
