@@ -3,6 +3,8 @@
 //! One core, release build. Every figure is the least of several repeats in one run, as the least is
 //! what the code takes when nothing else disturbs it.
 
+#![allow(clippy::expect_used, clippy::panic, reason = "a bench may fail loudly")]
+
 use std::path::Path;
 use std::time::Instant;
 

@@ -20,7 +20,8 @@ use aerobot_systems::instruments::energy::{
 };
 use aerobot_systems::instruments::swing::{SWING, SWING_X, SWING_Y, Support, swing};
 use bevy_ecs::entity::Entity;
-use bevy_ecs::system::{Res, ResMut};
+use bevy_ecs::schedule::IntoScheduleConfigs;
+use bevy_ecs::system::Res;
 use bevy_ecs::world::World;
 
 use super::recorder::Recorder;
@@ -43,13 +44,12 @@ impl Plugin for ChannelsPlugin {
             .add_check(check_names)
             .add_setup(set_up)
             .add_systems_if(Phase::Dynamics, records_energy, || nonconservative_power)
-            .add_systems(Phase::Observe, || find_due)
-            .add_systems(Phase::Observe, || accelerate_attachments)
-            .add_systems(Phase::Observe, || airspeed)
-            .add_systems(Phase::Observe, || attitude)
-            .add_systems(Phase::Observe, || swing)
-            .add_systems(Phase::Observe, || attachment_tension)
-            .add_systems_if(Phase::Observe, records_energy, || energy);
+            .add_systems(Phase::Observe, || {
+                (accelerate_attachments, airspeed, attitude, swing, attachment_tension)
+                    .chain()
+                    .run_if(channels_due)
+            })
+            .add_systems_if(Phase::Observe, records_energy, || energy.run_if(channels_due));
     }
 }
 
@@ -69,9 +69,9 @@ fn records_energy(scene: &Scene) -> bool {
     !wanted(&scene.run.record.channels, "system", &SYSTEM_CHANNELS).is_empty()
 }
 
-/// Says whether built-in channels are due at the time of the accepted state.
-fn find_due(clock: Res<Clock>, recorder: Res<Recorder>, mut log: ResMut<ChannelLog>) {
-    log.built_in_due = recorder.channels_due(clock.time_s);
+/// Whether built-in channels are due at the time of the accepted state.
+fn channels_due(clock: Res<Clock>, recorder: Res<Recorder>) -> bool {
+    recorder.channels_due(clock.time_s)
 }
 
 fn check_names(scene: &Scene, report: &mut FieldReport) {

@@ -11,6 +11,7 @@ use aerobot_systems::clock::Clock;
 use aerobot_systems::instruments::channel_log::ChannelLog;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::resource::Resource;
+use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::system::{Query, Res, ResMut};
 use bevy_ecs::world::World;
 
@@ -28,8 +29,9 @@ impl Plugin for RecorderPlugin {
         simulator
             .add_setup(set_up)
             .add_systems(Phase::Record, || track_largest_tension)
-            .add_systems(Phase::Record, || record_states)
-            .add_systems(Phase::Record, || record_segments)
+            .add_systems(Phase::Record, || {
+                (record_states, record_segments).chain().run_if(rows_due)
+            })
             .add_systems(Phase::Record, || record_channels);
     }
 }
@@ -155,6 +157,11 @@ fn track_largest_tension(
     }
 }
 
+/// Whether states or segments are due at the time of the accepted state.
+fn rows_due(clock: Res<Clock>, recorder: Res<Recorder>) -> bool {
+    clock.time_s >= recorder.next_s().min(recorder.end_s)
+}
+
 fn record_states(
     clock: Res<Clock>,
     mut recorder: ResMut<Recorder>,
@@ -210,8 +217,10 @@ fn record_channels(
     mut log: ResMut<ChannelLog>,
     names: Query<(&EntityName, &SpawnOrder)>,
 ) {
+    if log.is_empty() {
+        return;
+    }
     let recorder = &mut *recorder;
-    let built_in_due = log.built_in_due;
     let mut rows: Vec<(usize, ChannelRow)> = Vec::new();
     for sample in log.drain() {
         let (order, entity) = match sample.entity {
@@ -240,7 +249,7 @@ fn record_channels(
         InstrumentSelection::None => false,
         InstrumentSelection::Only(names) => names.iter().any(|name| **name == *row.entity),
     };
-    let is_built_in = |row: &ChannelRow| built_in_due && super::channels::is_built_in(row.channel);
+    let is_built_in = |row: &ChannelRow| super::channels::is_built_in(row.channel);
     let rows = rows.into_iter().map(|(_, row)| row);
     recorder
         .frame

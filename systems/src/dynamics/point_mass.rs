@@ -9,6 +9,7 @@ use bevy_ecs::system::Query;
 /// Accelerates every interior node.
 pub fn accelerate_nodes(mut nodes: Query<(&Force, &Mass, &mut Acceleration), With<TetherNode>>) {
     for (force, mass, mut acceleration) in &mut nodes {
-        acceleration.bypass_change_detection().0 = force.0 / mass.0;
+        // One division, not three.
+        acceleration.bypass_change_detection().0 = force.0 * (1.0 / mass.0);
     }
 }

@@ -84,13 +84,13 @@ pub fn load_points(
     mut points: Query<(&TetherPoint, &mut Force)>,
 ) {
     let loads = &mut arrays.load_n;
-    loads.fill(DVec3::ZERO);
     for (segment, load) in &segments {
         let ends = &mut loads[segment.from_point..segment.from_point + 2];
         ends[0] += load.from_n;
         ends[1] += load.to_n;
     }
     for (point, mut force) in &mut points {
-        force.bypass_change_detection().0 += loads[point.index];
+        // Taken, so that the next evaluation finds zeros.
+        force.bypass_change_detection().0 += std::mem::take(&mut loads[point.index]);
     }
 }

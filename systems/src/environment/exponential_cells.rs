@@ -88,7 +88,7 @@ impl ExponentialCells {
     }
 
     /// The value at `x`; `None` outside the knots and for NaN.
-    #[inline]
+    #[inline(always)]
     pub fn value(&self, x: f64) -> Option<f64> {
         let cell = &self.cells[self.bounds.interval(x)?];
         let [a0, a1, a2, a3, a4, a5] = cell.a;

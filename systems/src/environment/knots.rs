@@ -189,7 +189,8 @@ impl Knots {
 
     #[inline]
     fn bucket(&self, x: f64) -> usize {
-        let bucket = ((x - self.lowest) * self.buckets_per_unit) as usize;
+        // A conversion to u32 is one instruction, to usize it is six.
+        let bucket = ((x - self.lowest) * self.buckets_per_unit) as u32 as usize;
         bucket.min(self.last_interval.len() - 1)
     }
 

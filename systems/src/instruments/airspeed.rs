@@ -14,9 +14,6 @@ pub fn airspeed(
     mut log: ResMut<ChannelLog>,
     bodies: Query<(Entity, &BuiltInChannels, &Velocity, &Air)>,
 ) {
-    if !log.built_in_due {
-        return;
-    }
     for (entity, channels, velocity, air) in &bodies {
         if channels.has(AIRSPEED) {
             log.record(entity, AIRSPEED, (velocity.0 - air.velocity_m_s).length());

@@ -22,9 +22,6 @@ pub fn attachment_tension(
     tethers: Query<(Entity, &BuiltInChannels, &TetherParts)>,
     ends: Query<(&Force, &Mass, &Acceleration)>,
 ) {
-    if !log.built_in_due {
-        return;
-    }
     for (entity, channels, parts) in &tethers {
         for (channel, point) in [
             (TENSION_FROM, parts.points.first()),

@@ -15,9 +15,6 @@ pub const HEADING: &str = "heading_rad";
 
 /// Records tilt and heading of every body that asks for them.
 pub fn attitude(mut log: ResMut<ChannelLog>, bodies: Query<(Entity, &BuiltInChannels, &Attitude)>) {
-    if !log.built_in_due {
-        return;
-    }
     for (entity, channels, attitude) in &bodies {
         if channels.has(TILT) {
             log.record(entity, TILT, tilt_rad(attitude.0));

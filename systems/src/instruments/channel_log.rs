@@ -20,8 +20,6 @@ pub struct Sample {
 /// Samples of the current time, until the engine makes rows of them.
 #[derive(Resource, Debug, Default)]
 pub struct ChannelLog {
-    /// Whether built-in channels are due at the current time.
-    pub built_in_due: bool,
     samples: Vec<Sample>,
 }
 
@@ -42,6 +40,12 @@ impl ChannelLog {
             channel,
             value,
         });
+    }
+
+    /// Whether there is nothing to take.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.samples.is_empty()
     }
 
     /// Takes all samples.

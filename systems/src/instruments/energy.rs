@@ -70,9 +70,6 @@ pub fn energy(
     let Ok((channels, work)) = work.single() else {
         return;
     };
-    if !log.built_in_due {
-        return;
-    }
     let gravity = environment.gravity;
     let (mut kinetic, mut potential) = (0.0, 0.0);
     for (mass, position, velocity, turning) in &bodies {

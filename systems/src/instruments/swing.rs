@@ -31,9 +31,6 @@ pub fn swing(
     bodies: Query<(Entity, &BuiltInChannels, &Support)>,
     positions: Query<&Position>,
 ) {
-    if !log.built_in_due {
-        return;
-    }
     for (entity, channels, support) in &bodies {
         let (Ok(above), Ok(below)) = (positions.get(support.above), positions.get(support.below))
         else {
