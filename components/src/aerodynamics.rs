@@ -19,7 +19,7 @@ pub struct Sphere {
 
 /// A rule for the radius of a sphere.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "radius", deny_unknown_fields)]
 pub enum RadiusRule {
     /// The radius at which the balloon floats, with all that is tethered to it, at an altitude:
     /// rho V = total mass.

@@ -51,7 +51,7 @@ impl SceneComponent for Pose {
 
 /// An attitude as a scene writes it.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "attitude", deny_unknown_fields)]
 pub enum AttitudeSpec {
     /// The body frame parallel to the inertial frame.
     #[default]

@@ -7,7 +7,7 @@ use crate::scene_component::FieldReport;
 
 /// Gravity, air and wind of a scene.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "environment", deny_unknown_fields)]
 pub struct Environment {
     /// Gravity; Venus' 8.87 m/s^2, constant, unless said.
     #[serde(default)]
@@ -33,7 +33,7 @@ impl Environment {
 
 /// The pull of the planet, along -z.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "gravity", deny_unknown_fields)]
 pub enum Gravity {
     /// The same everywhere, m/s^2.
     Constant(f64),
@@ -102,7 +102,7 @@ impl Gravity {
 
 /// The air of a scene.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "atmosphere", deny_unknown_fields)]
 pub enum AtmosphereSpec {
     /// The Venus International Reference Atmosphere, latitude 0-30 deg, 0-100 km (Seiff et al. 1985).
     #[default]
@@ -150,6 +150,7 @@ pub enum AtmosphereSpec {
 
 /// The gas whose viscosity the air has.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename = "gas")]
 pub enum GasSpec {
     /// Carbon dioxide, for Venus.
     #[default]
@@ -192,7 +193,7 @@ impl AtmosphereSpec {
 
 /// One source of wind; the wind of a scene is the sum of its sources.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "wind", deny_unknown_fields)]
 pub enum WindSpec {
     /// The same everywhere and always.
     Uniform {
@@ -245,7 +246,11 @@ impl WindSpec {
                 report.finite("gradient_per_s", *gradient_per_s);
                 report.finite_vector("direction", *direction);
                 if (direction.length() - 1.0).abs() > 1e-6 {
-                    report.add("direction", "`direction` must have length 1", "");
+                    let message = format!(
+                        "`direction` must have length 1, it has {}",
+                        direction.length()
+                    );
+                    report.add("direction", message, "the default is (1, 0, 0)");
                 }
             }
             Self::Step {

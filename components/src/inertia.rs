@@ -12,7 +12,7 @@ use crate::scene_component::FieldReport;
 
 /// How the mass of a body is spread.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "inertia", deny_unknown_fields)]
 pub enum InertiaShape {
     /// A point: it has no attitude, and tethers attach at its centre.
     #[default]

@@ -8,7 +8,7 @@ use crate::scene_component::FieldReport;
 
 /// The `run` block of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "run", deny_unknown_fields)]
 pub struct RunSpec {
     /// Which equations move the tethers.
     #[serde(default)]
@@ -53,6 +53,7 @@ const MOST_OUTPUTS: f64 = 1e9;
 
 /// The equations that move tethers.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename = "formulation")]
 pub enum Formulation {
     /// Point masses joined by Kelvin-Voigt segments.
     #[default]
@@ -74,7 +75,7 @@ impl Formulation {
 
 /// The integrator and its accuracy.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "integrator", deny_unknown_fields)]
 pub enum IntegratorSpec {
     /// Dormand-Prince 5(4) with step control.
     Adaptive {
@@ -139,7 +140,7 @@ impl IntegratorSpec {
 
 /// What is recorded, and how often.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "record", deny_unknown_fields)]
 pub struct RecordSpec {
     /// Bodies and anchors in `states.csv`.
     #[serde(default)]
@@ -194,6 +195,7 @@ pub enum Cadence {
 
 /// Which built-in channels are recorded.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(rename = "channels")]
 pub enum ChannelSelection {
     /// Airspeed, tilt, heading, swing and attachment tensions of everything that has them.
     #[default]
@@ -208,6 +210,7 @@ pub enum ChannelSelection {
 
 /// Whether the channels of instruments and controllers are recorded.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(rename = "instruments")]
 pub enum InstrumentSelection {
     /// All of them.
     #[default]

@@ -133,7 +133,8 @@ impl SceneComponent for Tether {
 impl Tether {
     fn check_mass(&self, report: &mut FieldReport) {
         if self.nodes > MOST_NODES {
-            report.add("nodes", format!("`nodes` must be at most {MOST_NODES}"), "");
+            let message = format!("`nodes` must be at most {MOST_NODES}, it is {}", self.nodes);
+            report.add("nodes", message, "");
         }
         if self.diameter_m == 0.0 && (self.density_kg_m3 > 0.0 || self.drag.is_some()) {
             report.add(
@@ -141,7 +142,7 @@ impl Tether {
                 "`Tether` needs the field `diameter_m`: it has a density or a drag",
                 "give `diameter_m`, or leave out `density_kg_m3` and `drag`",
             );
-        } else if self.nodes > 0 && self.mass_kg() <= 0.0 {
+        } else if self.nodes > 0 && self.mass_kg() == 0.0 && self.length_m > 0.0 {
             report.add(
                 "nodes",
                 "an interior node without mass cannot be moved",
@@ -206,6 +207,7 @@ pub enum AttachmentPoint {
 
 /// The named places on a body.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename = "point")]
 pub enum NamedPoint {
     /// The lowest point of an upright sphere, box, cylinder or rod.
     Bottom,
@@ -217,7 +219,7 @@ pub enum NamedPoint {
 
 /// Coefficients of the drag of a line, Morison's form.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "drag", deny_unknown_fields)]
 pub struct TetherDrag {
     /// Normal coefficient C_n, on diameter x length.
     pub normal: f64,
@@ -227,6 +229,7 @@ pub struct TetherDrag {
 
 /// Where the mass of a tether goes.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename = "lumping")]
 pub enum Lumping {
     /// Half of each segment's mass to each of its ends; second order in 1/N.
     #[default]
@@ -237,6 +240,7 @@ pub enum Lumping {
 
 /// How the nodes of a tether start.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(rename = "start")]
 pub enum TetherStart {
     /// In static equilibrium in still air.
     #[default]

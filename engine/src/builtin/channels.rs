@@ -80,6 +80,7 @@ fn check_names(scene: &Scene, report: &mut FieldReport) {
     };
     for (name, wanted) in channels {
         let known = match scene.entity(name) {
+            Some(entity) if !entity.complete => continue,
             Some(entity) => known_channels(entity),
             None if name == "system" => &SYSTEM_CHANNELS,
             None => continue,

@@ -1,6 +1,7 @@
 //! The environment of a scene as a resource, and the air at everything that asks for it.
 
-use aerobot_components::aerodynamics::Drag;
+use aerobot_components::aerodynamics::{AddedMass, Buoyancy, Drag, RadiusRule, Sphere};
+use aerobot_components::body::{Fixed, Moving, Pose};
 use aerobot_components::environment::{AtmosphereSpec, Environment, WindSpec};
 use aerobot_components::scene_component::FieldReport;
 use aerobot_systems::environment::EnvironmentModel;
@@ -13,7 +14,7 @@ use bevy_ecs::world::World;
 
 use crate::plugin::{Plugin, Simulator};
 use crate::scene::tables::{Tables, gas_of};
-use crate::scene::{Scene, SetupError};
+use crate::scene::{Scene, SceneEntity, SetupError};
 use crate::schedule::Phase;
 use crate::world::Edges;
 
@@ -24,6 +25,7 @@ impl Plugin for EnvironmentPlugin {
     fn build(&self, simulator: &mut Simulator) {
         simulator
             .add_check(check_temperature)
+            .add_check(check_altitudes)
             .add_setup(set_up)
             .add_systems(Phase::Environment, || {
                 (air_at_bodies, air_at_segments).chain()
@@ -142,4 +144,40 @@ fn check_temperature(scene: &Scene, report: &mut FieldReport) {
             );
         }
     }
+}
+
+/// What is in the air must start where the atmosphere is known.
+fn check_altitudes(scene: &Scene, report: &mut FieldReport) {
+    let (lowest_m, highest_m) = atmosphere(&scene.environment, &scene.tables).bounds_m();
+    for entity in &scene.entities {
+        let Some((field, altitude_m)) = given_altitude(entity) else {
+            continue;
+        };
+        if altitude_m < lowest_m || altitude_m > highest_m {
+            report.add(
+                &format!("entities.{}.{field}", entity.name),
+                format!("an altitude of {altitude_m} m is outside the atmosphere"),
+                format!("it is known from {lowest_m} m to {highest_m} m; z is the altitude"),
+            );
+        }
+    }
+}
+
+/// Where an entity that meets the air is put by the scene: the field, and the altitude in m.
+fn given_altitude(entity: &SceneEntity) -> Option<(&'static str, f64)> {
+    if let Some(RadiusRule::Equilibrium { altitude_m }) =
+        entity.get::<Sphere>().and_then(|sphere| sphere.radius)
+    {
+        return Some(("Sphere.radius.altitude_m", altitude_m));
+    }
+    if !(entity.has::<Drag>() || entity.has::<Buoyancy>() || entity.has::<AddedMass>()) {
+        return None;
+    }
+    let fixed = entity.get::<Fixed>();
+    let moving = entity.get::<Moving>();
+    let pose = entity.get::<Pose>();
+    fixed
+        .map(|fixed| ("Fixed.position_m", fixed.position_m.z))
+        .or_else(|| moving.map(|moving| ("Moving.position_m", moving.position_m.z)))
+        .or_else(|| pose.map(|pose| ("Pose.position_m", pose.position_m.z)))
 }

@@ -24,7 +24,7 @@ use bevy_ecs::world::World;
 use glam::DVec3;
 
 use crate::plugin::{Plugin, Simulator};
-use crate::scene::source::nearest;
+use crate::scene::checks::meant;
 use crate::scene::{Scene, SceneEntity, SetupError};
 use crate::schedule::Phase;
 use crate::world::{EntityName, Free, SceneEntities, SpawnOrder, next_spawn_order};
@@ -80,12 +80,11 @@ fn check_end(
 ) {
     let TetherEnd(name, point) = end;
     let Some(target) = scene.entity(name) else {
-        let names = scene
+        let carriers = scene
             .entities
             .iter()
-            .filter(|entity| !entity.has::<Tether>());
-        let near = nearest(name, names.map(|entity| entity.name.as_str()));
-        let help = near.map_or_else(String::new, |near| format!("did you mean `{near}`?"));
+            .filter(|entity| !entity.has::<Tether>() && entity.name != tether.name);
+        let help = meant(name, carriers);
         report.add(
             path,
             format!("there is no entity `{name}` to tether to"),
@@ -93,6 +92,9 @@ fn check_end(
         );
         return;
     };
+    if !target.complete {
+        return;
+    }
     if let Some(other) = target.get::<Tether>() {
         let closes = other.from.0 == tether.name || other.to.0 == tether.name;
         let message = if closes && target.name != tether.name {

@@ -8,7 +8,7 @@ use super::source::nearest;
 use super::{Scene, SceneEntity};
 use crate::plugin::Simulator;
 
-/// Runs every check; those that look across the scene only if all of it could be read.
+/// Runs every check, also on a scene that is not `complete` because some of it could not be read.
 pub(super) fn check_scene(
     simulator: &Simulator,
     scene: &Scene,
@@ -21,20 +21,40 @@ pub(super) fn check_scene(
             report.within(&path, |report| component.check(report));
         }
     }
-    if !complete {
-        return;
+    if complete && scene.entities.is_empty() {
+        report.add(
+            "entities",
+            "the scene has no entities",
+            "add one: `\"gondola\": (Body: (mass_kg: ..), ..)`",
+        );
     }
-    if scene.entities.is_empty() {
-        report.add("entities", "the scene has no entities", "");
-    }
+    let mut across = FieldReport::new("");
     for entity in &scene.entities {
-        check_company(simulator, entity, report);
+        check_company(simulator, entity, &mut across);
     }
-    check_formulation(scene, report);
-    check_record(scene, report);
+    check_formulation(scene, &mut across);
+    check_record(scene, &mut across);
     for check in &simulator.checks {
-        check(scene, report);
+        check(scene, &mut across);
     }
+    for violation in across.into_violations() {
+        if !is_of_incomplete(scene, &violation.path) {
+            let help = violation.help.unwrap_or_default();
+            report.add(&violation.path, violation.message, help);
+        }
+    }
+}
+
+/// Whether a path leads to an entity of which some could not be read: what it seems to lack may be
+/// just that.
+fn is_of_incomplete(scene: &Scene, path: &str) -> bool {
+    let entity = path
+        .strip_prefix("entities.")
+        .and_then(|rest| rest.split('.').next());
+    scene
+        .entities
+        .iter()
+        .any(|other| !other.complete && Some(other.name.as_str()) == entity)
 }
 
 /// What a component excludes must be absent, and what it needs present.
@@ -44,7 +64,7 @@ fn check_company(simulator: &Simulator, entity: &SceneEntity, report: &mut Field
         report.add(
             &format!("entities.{}", entity.name),
             format!("`{}` has no components", entity.name),
-            "",
+            "give it a `Body`, a `Fixed` or a `Tether`, or leave it out",
         );
     }
     for (name, _) in &entity.components {
@@ -56,7 +76,7 @@ fn check_company(simulator: &Simulator, entity: &SceneEntity, report: &mut Field
             report.add(
                 &path,
                 format!("`{name}` and `{excluded}` exclude each other"),
-                "",
+                "keep one of the two",
             );
         }
         for group in entry
@@ -67,7 +87,7 @@ fn check_company(simulator: &Simulator, entity: &SceneEntity, report: &mut Field
             report.add(
                 &path,
                 format!("`{name}` needs `{}` beside it", group.join("` or `")),
-                "",
+                "add it to the same entity",
             );
         }
     }
@@ -85,24 +105,32 @@ fn check_formulation(scene: &Scene, report: &mut FieldReport) {
 
 /// Entities that the record block names must exist.
 fn check_record(scene: &Scene, report: &mut FieldReport) {
-    let mut named: Vec<(&str, String)> = Vec::new();
+    let mut named: Vec<(String, &str)> = Vec::new();
     if let ChannelSelection::Only(channels) = &scene.run.record.channels {
         let names = channels.keys().filter(|name| *name != "system");
-        named.extend(names.map(|name| ("run.record.channels", name.clone())));
+        named.extend(names.map(|name| (format!("run.record.channels.{name}"), name.as_str())));
     }
     if let InstrumentSelection::Only(names) = &scene.run.record.instruments {
-        named.extend(
-            names
-                .iter()
-                .map(|name| ("run.record.instruments", name.clone())),
-        );
+        let places = names.iter().enumerate();
+        named.extend(places.map(|(index, name)| {
+            let path = format!("run.record.instruments.0.{index}");
+            (path, name.as_str())
+        }));
     }
     for (path, name) in named {
-        if scene.entity(&name).is_none() {
-            let names = scene.entities.iter().map(|entity| entity.name.as_str());
-            let help = nearest(&name, names)
-                .map_or_else(String::new, |near| format!("did you mean `{near}`?"));
-            report.add(path, format!("there is no entity `{name}`"), help);
+        if scene.entity(name).is_none() {
+            let help = meant(name, scene.entities.iter());
+            report.add(&path, format!("there is no entity `{name}`"), help);
         }
+    }
+}
+
+/// The help for a name that no entity has: the nearest of `entities`, or else all of them.
+pub(crate) fn meant<'a>(name: &str, entities: impl Iterator<Item = &'a SceneEntity>) -> String {
+    let names: Vec<&str> = entities.map(|entity| entity.name.as_str()).collect();
+    match nearest(name, names.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None if names.is_empty() => String::new(),
+        None => format!("there are `{}`", names.join("`, `")),
     }
 }

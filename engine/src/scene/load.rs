@@ -1,8 +1,9 @@
 //! Reads a scene: text, overrides, typed parts, checks. Every violation is collected before it fails.
 
+use std::ops::Range;
 use std::path::Path;
 
-use aerobot_components::environment::Environment;
+use aerobot_components::environment::{AtmosphereSpec, Environment};
 use aerobot_components::run::RunSpec;
 use aerobot_components::scene_component::{FieldReport, Violation};
 use serde::de::DeserializeOwned;
@@ -11,7 +12,7 @@ use super::checks::check_scene;
 use super::source::FieldPath;
 use super::source::nearest;
 use super::source::non_finite;
-use super::source::parse_node;
+use super::source::parse_fields;
 use super::source::scan;
 use super::source::{Diagnostic, Source};
 use super::source::{Field, Kind, Node, duplicates};
@@ -65,7 +66,7 @@ impl Simulator {
     fn resolve(&self, source: Source, root: &Node, folder: &Path) -> Result<Scene, SceneError> {
         let mut reader = Reader {
             text: source.text(),
-            diagnostics: text_diagnostics(&source, root),
+            diagnostics: Vec::new(),
         };
         let fields = reader.root_fields(root);
         let name: Option<String> = reader.required(&fields, root, "name");
@@ -75,6 +76,7 @@ impl Simulator {
         let run: Option<RunSpec> = reader.required(&fields, root, "run");
         let entities = reader.entities(self, &fields, root);
         let mut diagnostics = reader.diagnostics;
+        let in_text = text_diagnostics(&source, root);
 
         let mut report = FieldReport::new("");
         if let Some(name) = &name {
@@ -88,11 +90,11 @@ impl Simulator {
             report.within("environment", |report| environment.check(report));
             tables = Tables::read(environment, folder, &mut report);
         }
-        let complete = diagnostics.is_empty();
+        let complete = diagnostics.is_empty() && in_text.is_empty();
         let scene = Scene {
             name: name.unwrap_or_default(),
             about: about.unwrap_or_default(),
-            environment: environment.unwrap_or_default(),
+            environment: environment.unwrap_or_else(placeholder_environment),
             entities,
             run: run.unwrap_or_else(placeholder_run),
             tables,
@@ -100,6 +102,8 @@ impl Simulator {
         };
         check_scene(self, &scene, complete, &mut report);
         diagnostics.extend(locate(&scene.source, report.into_violations()));
+        diagnostics.retain(|diagnostic| !echoes(diagnostic, &in_text));
+        diagnostics.extend(in_text);
         if diagnostics.is_empty() {
             Ok(scene)
         } else {
@@ -118,6 +122,25 @@ fn placeholder_run() -> RunSpec {
         seed: 0,
         record: Default::default(),
     }
+}
+
+/// Stands in for an `environment` that could not be read: nothing is outside of it.
+fn placeholder_environment() -> Environment {
+    Environment {
+        atmosphere: AtmosphereSpec::Vacuum,
+        ..Environment::default()
+    }
+}
+
+/// Whether a diagnostic is of a value in which the text itself is at fault, which is said already.
+fn echoes(diagnostic: &Diagnostic, in_text: &[Diagnostic]) -> bool {
+    let Some(span) = &diagnostic.span else {
+        return false;
+    };
+    in_text
+        .iter()
+        .filter_map(|fault| fault.span.as_ref())
+        .any(|fault| span.start <= fault.start && fault.end <= span.end)
 }
 
 fn check_name(name: &str, report: &mut FieldReport) {
@@ -153,9 +176,11 @@ fn text_diagnostics(source: &Source, root: &Node) -> Vec<Diagnostic> {
     }
     for span in non_finite(root, source.text()) {
         let value = &source.text()[span.clone()];
+        let path = root.innermost(span.start).map(|(_, path)| path);
         found.push(
             Diagnostic::new(format!("`{value}` is not a finite number"))
                 .at(span)
+                .with_path(path.unwrap_or_default().to_string())
                 .with_help("every quantity of a scene is a finite number"),
         );
     }
@@ -175,19 +200,24 @@ pub(super) fn locate(source: &Source, violations: Vec<Violation>) -> Vec<Diagnos
             }
             let path = violation.path.parse::<FieldPath>();
             if let (Some(root), Ok(path)) = (&root, path) {
-                let (node, reached) = root.reach(&path);
-                let whole = reached == path.segments.len();
-                let span = if whole && !matches!(node.kind, Kind::Struct { .. } | Kind::Map { .. })
-                {
-                    node.span.clone()
-                } else {
-                    node.opening()
-                };
-                diagnostic = diagnostic.at(span);
+                diagnostic = diagnostic.at(place(root, &path));
             }
             diagnostic
         })
         .collect()
+}
+
+/// Where a value is shown: itself, or what names it if it has many lines.
+fn place(root: &Node, path: &FieldPath) -> Range<usize> {
+    let (node, reached) = root.reach(path);
+    match &node.kind {
+        Kind::Struct { .. } | Kind::Map { .. } => node
+            .name()
+            .or_else(|| root.name_span(&path.head(reached)))
+            .unwrap_or_else(|| node.opening()),
+        _ if reached == path.segments.len() => node.span.clone(),
+        _ => node.opening(),
+    }
 }
 
 /// Reads typed parts out of the tree and keeps what goes wrong.
@@ -238,7 +268,7 @@ impl Reader<'_> {
         default: impl FnOnce() -> T,
     ) -> Option<T> {
         match fields.iter().find(|field| field.name == name) {
-            Some(field) => self.parse(&field.value, name),
+            Some(field) => self.parse(field),
             None => Some(default()),
         }
     }
@@ -250,7 +280,7 @@ impl Reader<'_> {
         name: &str,
     ) -> Option<T> {
         match fields.iter().find(|field| field.name == name) {
-            Some(field) => self.parse(&field.value, name),
+            Some(field) => self.parse(field),
             None => {
                 self.missing(root, name);
                 None
@@ -258,20 +288,41 @@ impl Reader<'_> {
         }
     }
 
+    /// Nothing is missing from what is no scene, nor what stands there under a wrong name.
     fn missing(&mut self, root: &Node, name: &str) {
+        let misnamed = |found: &&str| {
+            !ROOT_FIELDS.contains(found) && nearest(found, ROOT_FIELDS) == Some(name)
+        };
+        let is_scene = matches!(root.kind, Kind::Struct { .. });
+        if !is_scene || root.names().iter().any(misnamed) {
+            return;
+        }
         self.diagnostics.push(
             Diagnostic::new(format!("the scene needs the field `{name}`")).at(root.opening()),
         );
     }
 
-    fn parse<T: DeserializeOwned>(&mut self, node: &Node, path: &str) -> Option<T> {
-        match parse_node(self.text, node, path) {
+    fn parse<T: DeserializeOwned>(&mut self, field: &Field) -> Option<T> {
+        match parse_fields(self.text, &field.value, &field.name) {
             Ok(value) => Some(value),
-            Err(diagnostic) => {
-                self.diagnostics.push(diagnostic);
+            Err(found) => {
+                self.keep(field, found);
                 None
             }
         }
+    }
+
+    /// Keeps what was found in a field; what is of the whole of it is shown at its name.
+    fn keep(&mut self, field: &Field, found: Vec<Diagnostic>) {
+        let node = &field.value;
+        let opening = node.name().is_none().then(|| node.opening());
+        self.diagnostics.extend(found.into_iter().map(|diagnostic| {
+            if diagnostic.span.is_some() && diagnostic.span == opening {
+                diagnostic.at(field.name_span.clone())
+            } else {
+                diagnostic
+            }
+        }));
     }
 
     fn entities(
@@ -299,6 +350,7 @@ impl Reader<'_> {
                 self.diagnostics.push(
                     Diagnostic::new(format!("`{}` cannot name an entity", entry.name))
                         .at(entry.key.span.clone())
+                        .with_path("entities")
                         .with_help("use letters, digits, `-` and `_`"),
                 );
                 continue;
@@ -308,14 +360,18 @@ impl Reader<'_> {
                     Diagnostic::new(
                         "`system` cannot name an entity: it stands for the whole scene",
                     )
-                    .at(entry.key.span.clone()),
+                    .at(entry.key.span.clone())
+                    .with_path("entities.system")
+                    .with_help("give it another name"),
                 );
                 continue;
             }
+            let known = self.diagnostics.len();
             let components = self.components(simulator, &entry.name, &entry.value);
             entities.push(SceneEntity {
                 name: entry.name.clone(),
                 components,
+                complete: self.diagnostics.len() == known,
             });
         }
         entities
@@ -344,7 +400,7 @@ impl Reader<'_> {
             };
             match (entry.parse)(self.text, &field.value, &path) {
                 Ok(component) => components.push((entry.name, component)),
-                Err(diagnostic) => self.diagnostics.push(diagnostic),
+                Err(found) => self.keep(field, found),
             }
         }
         components

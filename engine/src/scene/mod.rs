@@ -44,6 +44,9 @@ pub struct SceneEntity {
     pub name: String,
     /// Its components with their names, in the order of the file.
     pub components: Vec<(&'static str, Box<dyn ParsedComponent>)>,
+    /// Whether all of it could be read. A check is also run on a scene that is refused in any case;
+    /// of an entity that is not complete it cannot know what is missing.
+    pub complete: bool,
 }
 
 impl SceneEntity {

@@ -8,7 +8,7 @@ use bevy_ecs::world::EntityWorldMut;
 
 use super::source::Diagnostic;
 use super::source::Node;
-use super::source::parse_node;
+use super::source::parse_fields;
 
 /// A component as read from a scene, its type forgotten.
 pub trait ParsedComponent: Any + Send + Sync {
@@ -34,7 +34,7 @@ impl<C: SceneComponent> ParsedComponent for C {
     }
 }
 
-type Parser = fn(&str, &Node, &str) -> Result<Box<dyn ParsedComponent>, Diagnostic>;
+type Parser = fn(&str, &Node, &str) -> Result<Box<dyn ParsedComponent>, Vec<Diagnostic>>;
 
 /// One kind of component.
 pub struct ComponentEntry {
@@ -60,7 +60,7 @@ impl ComponentEntry {
             requires: C::REQUIRES,
             type_id: TypeId::of::<C>(),
             parse: |text, node, path| {
-                parse_node::<C>(text, node, path)
+                parse_fields::<C>(text, node, path)
                     .map(|component| Box::new(component) as Box<dyn ParsedComponent>)
             },
         }

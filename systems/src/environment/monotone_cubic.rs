@@ -118,6 +118,18 @@ impl MonotoneCubic {
         piece.c0 + t * (piece.c1 + t * (piece.c2 + t * piece.c3))
     }
 
+    /// The same curve, `factor` times as high.
+    pub(super) fn scaled(&self, factor: f64) -> Self {
+        let pieces = self.pieces.iter().map(|piece| Piece {
+            start: piece.start,
+            c0: factor * piece.c0,
+            c1: factor * piece.c1,
+            c2: factor * piece.c2,
+            c3: factor * piece.c3,
+        });
+        Self { pieces: pieces.collect() }
+    }
+
     /// The Taylor coefficients (value, first, second / 2, third / 6) of the piece of `interval`
     /// about `x`.
     pub(super) fn taylor(&self, interval: usize, x: f64) -> [f64; 4] {

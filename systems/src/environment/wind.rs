@@ -118,6 +118,19 @@ impl WindSource {
         }
     }
 
+    fn scaled(&self, factor: f64) -> Self {
+        match self.clone() {
+            Self::Uniform { velocity_m_s } => Self::Uniform { velocity_m_s: factor * velocity_m_s },
+            Self::Shear { altitude_m, gradient_per_s, direction } => {
+                Self::Shear { altitude_m, gradient_per_s: factor * gradient_per_s, direction }
+            }
+            Self::Step { velocity_m_s, from_s, until_s } => {
+                Self::Step { velocity_m_s: factor * velocity_m_s, from_s, until_s }
+            }
+            Self::Profile(profile) => Self::Profile(profile.scaled(factor)),
+        }
+    }
+
     #[cold]
     fn outside(&self, altitude_m: f64) -> OutsideWindProfile {
         let (lowest_m, highest_m) = match self {
@@ -183,6 +196,19 @@ impl Wind {
         edges
     }
 
+    /// The same wind, `factor` times as strong.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let scaled = |sources: &[WindSource]| {
+            sources.iter().map(|source| source.scaled(factor)).collect()
+        };
+        Self {
+            level: scaled(&self.level),
+            layered: scaled(&self.layered),
+            level_m_s: factor * self.level_m_s,
+        }
+    }
+
     /// Fixes the step gusts that blow from `start_s` (s) until the next edge, and sums what does
     /// not depend on altitude.
     pub fn begin_interval(&mut self, start_s: f64) {
@@ -241,6 +267,20 @@ impl Wind {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_scaled_wind_is_the_wind_times_the_factor() {
+        let mut wind = Wind::new(vec![
+            WindSource::Uniform { velocity_m_s: DVec3::new(1.0, 2.0, 3.0) },
+            WindSource::Shear { altitude_m: 1e3, gradient_per_s: 1e-3, direction: DVec3::Y },
+            WindSource::Step { velocity_m_s: DVec3::Z, from_s: 0.0, until_s: 1.0 },
+            WindSource::Profile(WindProfile::venus_zonal()),
+        ]);
+        wind.begin_interval(0.5);
+        let whole = wind.velocity_m_s(54_321.0).unwrap();
+        let part = wind.scaled(0.3).velocity_m_s(54_321.0).unwrap();
+        assert!((part - 0.3 * whole).length() < 1e-14 * whole.length());
+    }
 
     fn step(x: f64, from_s: f64, until_s: f64) -> WindSource {
         WindSource::Step {

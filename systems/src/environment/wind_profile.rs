@@ -64,6 +64,17 @@ impl WindProfile {
         }
     }
 
+    /// The same profile, `factor` times as strong.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self {
+            knots: self.knots.clone(),
+            x: self.x.scaled(factor),
+            y: self.y.as_ref().map(|y| y.scaled(factor)),
+            z: self.z.as_ref().map(|z| z.scaled(factor)),
+        }
+    }
+
     /// The lowest altitude, m.
     #[inline]
     pub fn lowest_m(&self) -> f64 {

@@ -19,6 +19,8 @@ pub struct Diagnostic {
     pub path: Option<String>,
     /// What to do about it.
     pub help: Option<String>,
+    /// The `--set` at fault and the bytes of its argument, if it could not be applied.
+    pub argument: Option<(String, Range<usize>)>,
 }
 
 impl Diagnostic {

@@ -63,20 +63,38 @@ pub fn apply(text: &str, overrides: &[Override]) -> Result<EditedText, Diagnosti
     for (i, change) in overrides.iter().enumerate() {
         let root = match scan(edited.text()) {
             Err(error) if i == 0 => return Err(error.into()),
-            Err(error) => return Err(refused(change, &error.message)),
+            Err(error) => return Err(refused(change, 0, error.message)),
             Ok(root) => root,
         };
-        apply_one(&mut edited, &root, change).map_err(|why| refused(change, &why))?;
+        let (_, reached) = root.reach(&change.path);
+        apply_one(&mut edited, &root, change).map_err(|why| refused(change, reached, why))?;
     }
     Ok(edited)
 }
 
-fn refused(change: &Override, why: &str) -> Diagnostic {
+/// An override that cannot be applied, for what its path asks for after `reached` steps.
+fn refused(change: &Override, reached: usize, why: String) -> Diagnostic {
     Diagnostic {
-        message: format!("`--set {}`: {why}", change.original),
-        span: None,
-        path: None,
-        help: None,
+        argument: Some((change.original.clone(), part_of_argument(change, reached))),
+        ..Diagnostic::new(why)
+    }
+}
+
+/// Where a step of the path stands in the argument; the whole path if it is spelt in another way.
+fn part_of_argument(change: &Override, step: usize) -> Range<usize> {
+    let text = &change.original;
+    let start = text.len() - text.trim_start().len();
+    let mut before = change.path.head(step).to_string();
+    if step > 0 {
+        before.push('.');
+    }
+    let part = change.path.segments.get(step).map(ToString::to_string);
+    let part = part.unwrap_or_default();
+    let at = start + before.len();
+    if !part.is_empty() && text[start..].starts_with(&format!("{before}{part}")) {
+        at..at + part.len()
+    } else {
+        start..text.find('=').unwrap_or(text.len())
     }
 }
 

@@ -6,6 +6,7 @@
 //! when a name is asked of it.
 
 use std::fmt;
+use std::ops::Range;
 use std::str::FromStr;
 
 use super::tree::{Kind, Node};
@@ -163,6 +164,17 @@ impl Node {
     #[must_use]
     pub fn get(&self, path: &FieldPath) -> Option<&Node> {
         (path.segments.iter()).try_fold(self, |node, segment| node.step(segment))
+    }
+
+    /// The range of the name or key under which the value at a path stands; `None` for one that has
+    /// none, such as an element of a list.
+    #[must_use]
+    pub fn name_span(&self, path: &FieldPath) -> Option<Range<usize>> {
+        let (last, before) = path.segments.split_last()?;
+        let holder = self.get(&path.head(before.len()))?;
+        let children = holder.children().into_iter();
+        let mut named = children.filter(|(segment, ..)| segment.plain() == last.plain());
+        named.next().and_then(|(_, span, _)| span)
     }
 
     /// The innermost value that a path reaches, and how many of its steps lead there.

@@ -54,7 +54,9 @@ pub(super) fn render(source: &Source, diagnostics: &[Diagnostic]) -> String {
 
 fn one(source: &Source, diagnostic: &Diagnostic) -> String {
     let mut out = format!("error: {}\n", diagnostic.message);
-    let found = diagnostic.span.clone().map(|span| excerpt(source, span));
+    let refused = diagnostic.argument.as_ref();
+    let found = (diagnostic.span.clone().map(|span| excerpt(source, span)))
+        .or_else(|| refused.map(|(text, part)| (shown_argument(text, part.clone()), None)));
     let width = found.as_ref().map_or(1, |(e, _)| e.number.len().max(1));
     let space = " ".repeat(width);
     let place = (found.as_ref()).map_or(source.file_name.as_str(), |(e, _)| &e.place);
@@ -143,7 +145,12 @@ fn argument_excerpt<'a>(
     let at = in_argument(span.start).unwrap_or(change.value_offset);
     let last = (span.clone().rev()).find_map(in_argument).unwrap_or(at);
     let end = if span.is_empty() { at } else { last + 1 };
-    let (line_range, mark) = line_at(text, at..end.max(at));
+    shown_argument(text, at..end.max(at))
+}
+
+/// A part of the argument of a `--set`.
+fn shown_argument(text: &str, part: Range<usize>) -> Excerpt<'_> {
+    let (line_range, mark) = line_at(text, part);
     Excerpt {
         place: format!("--set {}", text.replace('\n', " ")),
         number: String::new(),

@@ -114,6 +114,17 @@ impl Scanner<'_> {
         SyntaxError::at(open, message)
     }
 
+    /// A quoted name among fields: a map goes on in which the innermost open bracket stands.
+    fn key_inside(&self) -> SyntaxError {
+        let open = self.open.last().cloned().unwrap_or_default();
+        let (line, column) = self.lexer.line_column(self.lexer.offset());
+        let message = format!(
+            "this `{}` is not closed before the key at line {line}, column {column}",
+            self.lexer.slice(open.clone())
+        );
+        SyntaxError::at(open, message)
+    }
+
     fn at_own_close(&self) -> bool {
         let open = self.open.last().cloned().unwrap_or_default();
         self.lexer.peek() == Some(closing(self.lexer.slice(open)))
@@ -143,14 +154,25 @@ impl Scanner<'_> {
     }
 
     /// After a value: a comma, or the end of the brackets (which is left to [`Self::leave`]).
-    fn separator(&mut self) -> Result<(), SyntaxError> {
-        let end = self.lexer.offset();
+    fn separator(&mut self, value: &Range<usize>) -> Result<(), SyntaxError> {
         self.lexer.skip_space()?;
         match self.lexer.peek() {
             _ if self.lexer.eat(',') || self.at_own_close() => Ok(()),
             None | Some(')' | ']' | '}') => Err(self.unclosed()),
             Some(':' | ';' | '=') => Err(self.unexpected("a comma")),
-            Some(_) => Err(SyntaxError::at(end..end, "a comma is missing here")),
+            Some(_) => Err(self.no_comma(value)),
+        }
+    }
+
+    /// A string that goes on over lines up to the first quote of another has lost its own.
+    fn no_comma(&self, value: &Range<usize>) -> SyntaxError {
+        let text = self.lexer.slice(value.clone());
+        match text.find('\n') {
+            Some(line) if text.starts_with('"') => SyntaxError::at(
+                value.start..value.start + line,
+                "this string is not closed in its line: a `\"` is missing",
+            ),
+            _ => SyntaxError::at(value.end..value.end, "a comma is missing here"),
         }
     }
 
@@ -158,8 +180,9 @@ impl Scanner<'_> {
         self.enter()?;
         let mut items = Vec::new();
         while !self.leave()? {
-            items.push(self.value()?);
-            self.separator()?;
+            let item = self.value()?;
+            self.separator(&item.span)?;
+            items.push(item);
         }
         Ok(Kind::List(items))
     }
@@ -171,7 +194,7 @@ impl Scanner<'_> {
             let key = self.value()?;
             self.colon(&key.span, "key")?;
             let value = self.value()?;
-            self.separator()?;
+            self.separator(&value.span)?;
             let name = key_name(self.lexer.slice(key.span.clone()), &key.kind);
             entries.push(Entry { name, key, value });
         }
@@ -206,7 +229,10 @@ impl Scanner<'_> {
                 Some((field, name_span)) => self.field(&mut inside, field, name_span)?,
                 None => inside.items.push(self.value()?),
             }
-            self.separator()?;
+            let last = inside.items.last();
+            let last = last.or(inside.fields.last().map(|field| &field.value));
+            let span = last.map_or(0..0, |value| value.span.clone());
+            self.separator(&span)?;
         }
         let Parens { fields, items } = inside;
         Ok(if items.is_empty() {
@@ -265,6 +291,7 @@ impl Scanner<'_> {
             (false, true) => Ok(None),
             (false, false) => match self.lexer.peek() {
                 None | Some(']' | '}') => Err(self.unclosed()),
+                Some('"') => Err(self.key_inside()),
                 Some(_) => Err(self.unexpected("the name of a field")),
             },
         }

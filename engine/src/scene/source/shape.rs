@@ -82,6 +82,7 @@ fn no_parentheses(failure: &Failure<'_>, name: &str, place: &Place<'_>) -> Diagn
     let found = failure.found(node);
     let message = match name {
         "" => format!("expected values in parentheses, found {found}"),
+        "DVec3" => format!("expected three numbers `(x, y, z)`, found {found}"),
         name => format!("expected the fields of `{name}` in parentheses, found {found}"),
     };
     failure.at_node(message, (node, path))

@@ -1,0 +1,50 @@
+//! Runs scenes through the library for the tests of this folder.
+
+#![allow(dead_code, reason = "every test file uses its own part")]
+
+use std::path::{Path, PathBuf};
+
+use aerobot::engine::plugin::Simulator;
+use aerobot::engine::recording::frame::MemorySink;
+use aerobot::engine::scene::Scene;
+
+/// A scene of the repository.
+pub(crate) fn scene_file(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name)
+}
+
+/// Overrides as the library takes them.
+pub(crate) fn owned(overrides: &[&str]) -> Vec<String> {
+    overrides.iter().map(|text| (*text).to_owned()).collect()
+}
+
+/// Loads a scene from text.
+pub(crate) fn load(simulator: &Simulator, text: &str, overrides: &[&str]) -> Scene {
+    simulator
+        .load_text("test.ron", text.to_owned(), Path::new("."), &owned(overrides))
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Flies a scene given as text.
+pub(crate) fn fly(text: &str, overrides: &[&str]) -> MemorySink {
+    let simulator = Simulator::new();
+    run(&simulator, &load(&simulator, text, overrides))
+}
+
+/// Flies a scene of the repository.
+pub(crate) fn fly_scene(name: &str, overrides: &[&str]) -> MemorySink {
+    let simulator = Simulator::new();
+    let scene = simulator
+        .load(&scene_file(name), &owned(overrides))
+        .unwrap_or_else(|error| panic!("{error}"));
+    run(&simulator, &scene)
+}
+
+/// Flies a scene to its end.
+pub(crate) fn run(simulator: &Simulator, scene: &Scene) -> MemorySink {
+    let mut simulation = simulator.build(scene).unwrap_or_else(|error| panic!("{error}"));
+    let mut results = MemorySink::default();
+    let summary = simulation.run(&mut results, &mut |_| {});
+    assert_eq!(summary.outcome, "done", "{:?}", summary.stopped);
+    results
+}
