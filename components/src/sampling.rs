@@ -5,7 +5,8 @@ use bevy_ecs::component::Component;
 /// Acts at the times k x period, k = 0, 1, 2, ...
 ///
 /// The run never steps across such a time: every entity that carries a `Sampling` finds a step that
-/// ends exactly there. Its system asks [`Sampling::is_due`] and then calls [`Sampling::done`].
+/// ends exactly there. An entity has one: what samples for a body (several instruments may) is an
+/// entity of its own that names the body. Its system asks [`Sampling::is_due`] and then calls [`Sampling::done`].
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct Sampling {
     period_s: f64,

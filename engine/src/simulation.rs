@@ -7,7 +7,7 @@ use aerobot_components::state::{AngularVelocity, Attitude, Position, StateIndex,
 use aerobot_systems::clock::Clock;
 use aerobot_systems::dynamics::state_vector::StateVector;
 use aerobot_systems::environment::EnvironmentModel;
-use aerobot_systems::fault::Fault;
+use aerobot_systems::fault::{Fault, FaultSlot};
 use aerobot_systems::forces::body_drag::BeyondMorrison;
 use aerobot_systems::integration::dormand_prince::DormandPrince;
 use aerobot_systems::integration::runge_kutta4::RungeKutta4;
@@ -314,6 +314,11 @@ impl Simulation {
             // What was observed after a failed step is not an accepted state.
             self.world.resource_mut::<Recorder>().frame.clear(time_s);
             return Some(self.explain(&failure, known));
+        }
+        // What an instrument reports belongs to this state, not to the next evaluation.
+        if let Some(fault) = self.world.resource_mut::<FaultSlot>().take() {
+            self.world.resource_mut::<Recorder>().frame.clear(time_s);
+            return Some(self.explain(&StepFailure::Fault(fault), time_s));
         }
         let mut recorder = self.world.resource_mut::<Recorder>();
         recorder.done(time_s);

@@ -26,7 +26,7 @@ use bevy_ecs::system::Query;
 use glam::{DMat3, DVec3};
 
 /// Point masses that a body carries at offsets from its centre of mass, summed, body frame.
-#[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct CarriedMass {
     /// Sum of the masses, kg.
     pub mass_kg: f64,
@@ -34,6 +34,13 @@ pub struct CarriedMass {
     pub first_moment_kg_m: DVec3,
     /// Sum of m (r^2 I - r r'), kg m^2.
     pub inertia_kg_m2: DMat3,
+}
+
+impl Default for CarriedMass {
+    /// Nothing carried. (Not derived: the default of a matrix in glam is the identity.)
+    fn default() -> Self {
+        Self { mass_kg: 0.0, first_moment_kg_m: DVec3::ZERO, inertia_kg_m2: DMat3::ZERO }
+    }
 }
 
 impl CarriedMass {
@@ -128,6 +135,18 @@ fn cross_matrix_squared(s: DVec3) -> DMat3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// m (r^2 I - r r') of two masses, by hand.
+    #[test]
+    fn carried_masses_add_up_from_nothing() {
+        let mut carried = CarriedMass::default();
+        carried.add(2.0, DVec3::new(1.0, 0.0, 0.0));
+        carried.add(3.0, DVec3::new(0.0, 0.0, -2.0));
+        assert_eq!(carried.mass_kg, 5.0);
+        assert_eq!(carried.first_moment_kg_m, DVec3::new(2.0, 0.0, -6.0));
+        let expected = DMat3::from_diagonal(DVec3::new(12.0, 2.0 + 12.0, 2.0));
+        assert_eq!(carried.inertia_kg_m2, expected);
+    }
 
     /// A body with masses bolted on must move as the equivalent body about its true centre of mass.
     #[test]

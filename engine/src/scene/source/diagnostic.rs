@@ -20,7 +20,7 @@ pub struct Diagnostic {
     /// What to do about it.
     pub help: Option<String>,
     /// The `--set` at fault and the bytes of its argument, if it could not be applied.
-    pub argument: Option<(String, Range<usize>)>,
+    pub argument: Option<Box<(String, Range<usize>)>>,
 }
 
 impl Diagnostic {

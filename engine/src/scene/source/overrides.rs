@@ -75,7 +75,10 @@ pub fn apply(text: &str, overrides: &[Override]) -> Result<EditedText, Diagnosti
 /// An override that cannot be applied, for what its path asks for after `reached` steps.
 fn refused(change: &Override, reached: usize, why: String) -> Diagnostic {
     Diagnostic {
-        argument: Some((change.original.clone(), part_of_argument(change, reached))),
+        argument: Some(Box::new((
+            change.original.clone(),
+            part_of_argument(change, reached),
+        ))),
         ..Diagnostic::new(why)
     }
 }

@@ -54,7 +54,7 @@ pub(super) fn render(source: &Source, diagnostics: &[Diagnostic]) -> String {
 
 fn one(source: &Source, diagnostic: &Diagnostic) -> String {
     let mut out = format!("error: {}\n", diagnostic.message);
-    let refused = diagnostic.argument.as_ref();
+    let refused = diagnostic.argument.as_deref();
     let found = (diagnostic.span.clone().map(|span| excerpt(source, span)))
         .or_else(|| refused.map(|(text, part)| (shown_argument(text, part.clone()), None)));
     let width = found.as_ref().map_or(1, |(e, _)| e.number.len().max(1));
