@@ -6,7 +6,10 @@
 //! bad_input` writes the `.txt` files anew: do that after reading every message that changed and
 //! finding it better than the old one, never to make the test pass.
 
-#![allow(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test stops at what it does not expect"
+)]
 
 use std::collections::BTreeMap;
 use std::fs;
