@@ -54,13 +54,22 @@ fn largest_difference(integrator: &str) -> f64 {
 
 /// Displacements of balloon and gondola at every second, m; empty without the reference data.
 fn reference() -> Vec<[DVec3; 2]> {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/reference/comparison_lumped.csv");
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../shared/reference/comparison_lumped.csv"
+    );
     let text = std::fs::read_to_string(file).unwrap_or_default();
     text.lines()
         .filter(|line| line.starts_with(|c: char| c.is_ascii_digit()))
         .map(|line| {
-            let values: Vec<f64> = line.split(',').map(|field| field.parse().unwrap()).collect();
-            [DVec3::from_slice(&values[1..]), DVec3::from_slice(&values[4..])]
+            let values: Vec<f64> = line
+                .split(',')
+                .map(|field| field.parse().unwrap())
+                .collect();
+            [
+                DVec3::from_slice(&values[1..]),
+                DVec3::from_slice(&values[4..]),
+            ]
         })
         .collect()
 }
@@ -102,10 +111,16 @@ fn attachment_tensions_balance_the_weight() {
     let line = 1440.0 * 900.0 * std::f64::consts::PI * 1e-6;
     let from = results.channel("tether", "tension_from_n")[0].1;
     let to = results.channel("tether", "tension_to_n")[0].1;
-    assert!((from / (8.87 * (100.0 + line)) - 1.0).abs() < 1e-9, "{from}");
+    assert!(
+        (from / (8.87 * (100.0 + line)) - 1.0).abs() < 1e-9,
+        "{from}"
+    );
     assert!((to / (8.87 * 100.0) - 1.0).abs() < 1e-9, "{to}");
     let top = results.frames[0].segments[0].tension_n;
-    assert!((top - 8.87 * (100.0 + line * (1.0 - 0.5 / 11.0))).abs() < 1e-6, "{top}");
+    assert!(
+        (top - 8.87 * (100.0 + line * (1.0 - 0.5 / 11.0))).abs() < 1e-6,
+        "{top}"
+    );
 }
 
 /// A scene file must be loadable from anywhere; `fly` and `fly_scene` agree.

@@ -9,8 +9,8 @@
 
 mod flight;
 
-use aerobot::engine::plugin::Simulator;
 use aerobot::components::state::Position;
+use aerobot::engine::plugin::Simulator;
 use aerobot::engine::world::SceneEntities;
 use flight::{fly, load};
 use glam::DVec3;
@@ -55,17 +55,28 @@ fn error(found: (DVec3, DVec3), exact: (DVec3, DVec3)) -> f64 {
 /// log2 of the ratio of errors at a step and at half of it.
 fn orders(integrator: impl Fn(f64) -> String, steps: &[f64]) -> Vec<f64> {
     let exact = end("Adaptive(relative_tolerance: 1e-14)");
-    let errors: Vec<f64> =
-        steps.iter().map(|step| error(end(&integrator(*step)), exact)).collect();
+    let errors: Vec<f64> = steps
+        .iter()
+        .map(|step| error(end(&integrator(*step)), exact))
+        .collect();
     println!("errors {errors:?}");
-    errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect()
+    errors
+        .windows(2)
+        .map(|pair| (pair[0] / pair[1]).log2())
+        .collect()
 }
 
 #[test]
 fn runge_kutta_is_of_fourth_order() {
-    let orders = orders(|step| format!("Fixed(step_s: {step})"), &[0.004, 0.002, 0.001]);
+    let orders = orders(
+        |step| format!("Fixed(step_s: {step})"),
+        &[0.004, 0.002, 0.001],
+    );
     println!("RK4: {orders:?}");
-    assert!(orders.iter().all(|order| (order - 4.0).abs() < 0.15), "{orders:?}");
+    assert!(
+        orders.iter().all(|order| (order - 4.0).abs() < 0.15),
+        "{orders:?}"
+    );
 }
 
 /// A tolerance that accepts every step leaves the longest step in charge.
@@ -76,7 +87,10 @@ fn dormand_prince_is_of_fifth_order() {
         &[0.008, 0.004, 0.002],
     );
     println!("Dormand-Prince: {orders:?}");
-    assert!(orders.iter().all(|order| (order - 5.0).abs() < 0.25), "{orders:?}");
+    assert!(
+        orders.iter().all(|order| (order - 5.0).abs() < 0.25),
+        "{orders:?}"
+    );
 }
 
 /// The error of the adaptive method follows the tolerance it is given.
@@ -84,7 +98,10 @@ fn dormand_prince_is_of_fifth_order() {
 fn the_error_follows_the_tolerance() {
     let exact = end("Adaptive(relative_tolerance: 1e-14)");
     for tolerance in [1e-5, 1e-7, 1e-9, 1e-11] {
-        let found = error(end(&format!("Adaptive(relative_tolerance: {tolerance:e})")), exact);
+        let found = error(
+            end(&format!("Adaptive(relative_tolerance: {tolerance:e})")),
+            exact,
+        );
         println!("tolerance {tolerance:e}: error {found:.2e}");
         assert!(found < 20.0 * tolerance, "{tolerance}: {found}");
     }
@@ -98,7 +115,7 @@ mod towline {
     pub(super) const STIFFNESS_N: f64 = 27359.24;
     pub(super) const SPEED_M_S: f64 = 5.0;
     /// Depth of the probe on the continuous elastic cable, solved by a separate program, m.
-    pub(super) const CONTINUOUS_Z_M: f64 = 43714.632_962_28;
+    pub(super) const CONTINUOUS_Z_M: f64 = 43_714.632_962_28;
 
     pub(super) fn mass_kg() -> f64 {
         MATERIAL_KG_M3 * LENGTH_M * std::f64::consts::PI * 0.25 * DIAMETER_M * DIAMETER_M
@@ -133,8 +150,12 @@ fn towline_probe_z_m(nodes: u32, lumping: &str) -> f64 {
     );
     let simulator = Simulator::new();
     let scene = load(&simulator, &text, &[]);
-    let mut simulation = simulator.build(&scene).unwrap_or_else(|error| panic!("{error}"));
-    simulation.settle_in_wind(&scene).unwrap_or_else(|error| panic!("{error}"));
+    let mut simulation = simulator
+        .build(&scene)
+        .unwrap_or_else(|error| panic!("{error}"));
+    simulation
+        .settle_in_wind(&scene)
+        .unwrap_or_else(|error| panic!("{error}"));
     let world = simulation.world();
     let probe = world.resource::<SceneEntities>().get("probe").unwrap();
     world.get::<Position>(probe).unwrap().0.z
@@ -152,8 +173,10 @@ fn towline_by_shooting_z_m(nodes: u32, node_kg: f64, end_kg: f64) -> f64 {
         let (c, d) = ((by_x.1 - here.1) / h, (by_z.1 - here.1) / h);
         let (miss_x, miss_z) = (-here.0, 52_000.0 - here.1);
         let determinant = a * d - b * c;
-        let step =
-            ((miss_x * d - b * miss_z) / determinant, (a * miss_z - c * miss_x) / determinant);
+        let step = (
+            (miss_x * d - b * miss_z) / determinant,
+            (a * miss_z - c * miss_x) / determinant,
+        );
         (x, z) = (x + step.0, z + step.1);
         if step.0.abs() + step.1.abs() < 1e-9 {
             break;
@@ -210,7 +233,11 @@ fn shoot(nodes: u32, node_kg: f64, end_kg: f64, mut x: f64, mut z: f64) -> (f64,
 
 /// Errors of depth against the continuous cable; each discrete line agrees with its shooting solution
 /// to the round-off of an altitude seen through a long line.
-fn depth_errors_m(lumping: &str, node_kg: impl Fn(u32) -> f64, end_kg: impl Fn(u32) -> f64) -> [f64; 4] {
+fn depth_errors_m(
+    lumping: &str,
+    node_kg: impl Fn(u32) -> f64,
+    end_kg: impl Fn(u32) -> f64,
+) -> [f64; 4] {
     let errors = [50, 100, 200, 400].map(|nodes| {
         let z = towline_probe_z_m(nodes, lumping);
         let shot = towline_by_shooting_z_m(nodes, node_kg(nodes), end_kg(nodes));
@@ -247,7 +274,13 @@ fn interior_lumping_is_of_first_order() {
     for (error, expected) in errors.into_iter().zip([1.02, 0.453, 0.212, 0.102]) {
         assert!((error / expected - 1.0).abs() < 0.01, "{error} {expected}");
     }
-    let orders: Vec<f64> = errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
-    assert!(orders.windows(2).all(|pair| pair[1] < pair[0]), "{orders:?}");
+    let orders: Vec<f64> = errors
+        .windows(2)
+        .map(|pair| (pair[0] / pair[1]).log2())
+        .collect();
+    assert!(
+        orders.windows(2).all(|pair| pair[1] < pair[0]),
+        "{orders:?}"
+    );
     assert!((orders[2] - 1.0).abs() < 0.1, "{orders:?}");
 }

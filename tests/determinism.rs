@@ -17,8 +17,13 @@ use aerobot::engine::plugin::Simulator;
 use flight::{owned, run, scene_file};
 
 /// Everything in a run's folder but `timing.json`.
-const FILES: [&str; 5] =
-    ["scene.ron", "states.csv", "tethers.csv", "channels.csv", "summary.json"];
+const FILES: [&str; 5] = [
+    "scene.ron",
+    "states.csv",
+    "tethers.csv",
+    "channels.csv",
+    "summary.json",
+];
 
 struct Folder(PathBuf);
 
@@ -45,7 +50,11 @@ fn run_command(scene: &Path, out: &Path, arguments: &[&str]) {
         .args(arguments)
         .output()
         .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
 }
 
 fn assert_same_bytes(a: &Path, b: &Path) {
@@ -61,8 +70,19 @@ fn assert_same_bytes(a: &Path, b: &Path) {
 #[test]
 fn a_run_and_its_own_scene_give_the_same_bytes() {
     let scene = scene_file("paper/comparison_900m.ron");
-    let arguments = ["--until", "25", "--seed", "7", "--set", "run.record=(channels: All)"];
-    let (first, second, third) = (Folder::new("first"), Folder::new("second"), Folder::new("third"));
+    let arguments = [
+        "--until",
+        "25",
+        "--seed",
+        "7",
+        "--set",
+        "run.record=(channels: All)",
+    ];
+    let (first, second, third) = (
+        Folder::new("first"),
+        Folder::new("second"),
+        Folder::new("third"),
+    );
     run_command(&scene, &first.0, &arguments);
     run_command(&scene, &second.0, &arguments);
     run_command(&first.0.join("scene.ron"), &third.0, &[]);
@@ -124,11 +144,14 @@ fn the_order_of_systems_is_not_in_the_results() {
 fn threads_do_not_disturb_each_other() {
     let simulator = Simulator::new();
     let file = scene_file("paper/comparison_900m.ron");
-    let scene = simulator.load(&file, &owned(&["run.duration_s=12"])).unwrap();
+    let scene = simulator
+        .load(&file, &owned(&["run.duration_s=12"]))
+        .unwrap();
     let alone = run(&simulator, &scene).frames;
     std::thread::scope(|scope| {
-        let flights: Vec<_> =
-            (0..4).map(|_| scope.spawn(|| run(&simulator, &scene).frames)).collect();
+        let flights: Vec<_> = (0..4)
+            .map(|_| scope.spawn(|| run(&simulator, &scene).frames))
+            .collect();
         for flight in flights {
             assert!(flight.join().unwrap() == alone);
         }

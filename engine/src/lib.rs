@@ -13,5 +13,7 @@ pub mod scene;
 pub mod schedule;
 pub mod simulation;
 pub mod stable_step;
+mod stopping;
+mod summarise;
 
 pub mod world;

@@ -1,14 +1,11 @@
 //! A simulation: the world of one scene, built, and the loop that runs it.
 
-use aerobot_components::body::Body;
 use aerobot_components::run::IntegratorSpec;
 use aerobot_components::sampling::Sampling;
-use aerobot_components::state::{AngularVelocity, Attitude, Position, StateIndex, Velocity};
 use aerobot_systems::clock::Clock;
 use aerobot_systems::dynamics::state_vector::StateVector;
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::fault::{Fault, FaultSlot};
-use aerobot_systems::forces::body_drag::BeyondMorrison;
 use aerobot_systems::integration::dormand_prince::DormandPrince;
 use aerobot_systems::integration::runge_kutta4::RungeKutta4;
 use aerobot_systems::integration::{Cost, Equations, Integrator, StepFailure, Trajectory};
@@ -17,18 +14,19 @@ use bevy_ecs::schedule::Schedule;
 use bevy_ecs::world::World;
 
 use crate::builtin::channels::find_supports;
-use crate::builtin::recorder::{Recorder, segment_name};
+use crate::builtin::recorder::Recorder;
 use crate::evaluation::{
     Evaluation, Integration, IntegrationSlot, WorldEquations, with_integration,
 };
 use crate::placement;
 use crate::plugin::Simulator;
 use crate::recording::frame::ResultSink;
-use crate::recording::summary::{EventRow, FinalState, LargestTension, Stop, Summary, VERSION};
+use crate::recording::summary::{Stop, Summary};
 use crate::scene::{Scene, SceneError, SetupError};
 use crate::schedule::{self, EVALUATE, Evaluate, STEP, Step};
 use crate::stable_step::{self, StableStep};
-use crate::world::{Edges, EntityName, EventLog, SceneEntities, build_world, lay_out_state};
+use crate::stopping::owner_name;
+use crate::world::{Edges, build_world, lay_out_state};
 
 /// RK4 steps of this part of the largest stable one unless the scene says otherwise.
 const DEFAULT_PART_OF_STABLE_STEP: f64 = 0.5;
@@ -39,21 +37,21 @@ const FIRST_PART_OF_STABLE_STEP: f64 = 0.1;
 
 /// A built simulation.
 pub struct Simulation {
-    world: World,
+    pub(crate) world: World,
     step: Schedule,
     samplings: QueryState<&'static Sampling>,
     duration_s: f64,
-    stable_step: StableStep,
-    step_s: Option<f64>,
-    scene: SceneFacts,
+    pub(crate) stable_step: StableStep,
+    pub(crate) step_s: Option<f64>,
+    pub(crate) scene: SceneFacts,
 }
 
 /// What the summary says of the scene.
-struct SceneFacts {
-    name: String,
-    seed: u64,
-    formulation: &'static str,
-    integrator: String,
+pub(crate) struct SceneFacts {
+    pub(crate) name: String,
+    pub(crate) seed: u64,
+    pub(crate) formulation: &'static str,
+    pub(crate) integrator: String,
 }
 
 impl Simulator {
@@ -179,15 +177,6 @@ fn describe(integrator: &IntegratorSpec, step_s: Option<f64>) -> String {
     }
 }
 
-/// The name of an entity, or of the tether that a segment belongs to.
-fn owner_name(world: &World, entity: bevy_ecs::entity::Entity) -> Option<String> {
-    if let Some(name) = world.get::<EntityName>(entity) {
-        return Some(name.0.to_string());
-    }
-    let (tether, segment) = segment_name(world, entity);
-    (segment > 0).then_some(tether)
-}
-
 impl Simulation {
     /// Runs from the start to the end of the scene, or to where it cannot go on. Frames go to `sink`
     /// as they come; `progress` hears of every accepted step's time in s.
@@ -210,7 +199,11 @@ impl Simulation {
     /// What finds no rest, rendered.
     pub fn settle_in_wind(&mut self, scene: &Scene) -> Result<(), SceneError> {
         with_integration(&mut self.world, |world, integration| {
-            let Integration { evaluation, trajectory, .. } = integration;
+            let Integration {
+                evaluation,
+                trajectory,
+                ..
+            } = integration;
             placement::settle_in_wind(world, evaluation, scene)?;
             evaluation.state.gather(world, &mut trajectory.state);
             trajectory.rates_are_current = false;
@@ -343,135 +336,4 @@ impl Simulation {
             reason: format!("the results cannot be written: {error}"),
         })
     }
-
-    fn explain(&mut self, failure: &StepFailure, time_s: f64) -> Stop {
-        let remedy = match self.step_s {
-            Some(step_s) => format!(
-                "; the step is {step_s:.4e} s and the largest stable one was {:.4e} s at the start \
-                 (segment `{}`): choose a shorter step, or `Adaptive()`",
-                self.stable_step.step_s, self.stable_step.segment
-            ),
-            None => String::new(),
-        };
-        let (entity, reason) = match failure {
-            StepFailure::Fault(fault) => {
-                let entity = fault
-                    .entity
-                    .and_then(|entity| owner_name(&self.world, entity));
-                (entity, fault.message.clone())
-            }
-            StepFailure::NotFinite { index } => (
-                self.name_of_state(*index),
-                format!("the motion is no longer a finite number{remedy}"),
-            ),
-            StepFailure::Runaway { index, value } => (
-                self.name_of_state(*index),
-                format!("the motion grows beyond all bounds ({value:.3e}){remedy}"),
-            ),
-            StepFailure::StepTooSmall { step_s, index } => (
-                self.name_of_state(*index),
-                format!(
-                    "no step is short enough for the error asked for (tried {step_s:.3e} s): a force \
-                     that jumps, or a tolerance below round-off"
-                ),
-            ),
-        };
-        Stop {
-            time_s,
-            entity,
-            reason,
-        }
-    }
-
-    /// The entity to which a place in the state belongs.
-    fn name_of_state(&mut self, index: usize) -> Option<String> {
-        let coordinates = with_integration(&mut self.world, |_, integration| {
-            integration.evaluation.state.layout().coordinates
-        })?;
-        if index >= 2 * coordinates {
-            return None;
-        }
-        let place = index % coordinates;
-        let mut states = self.world.query::<(&StateIndex, &EntityName)>();
-        states
-            .iter(&self.world)
-            .filter(|(start, _)| start.0 <= place)
-            .max_by_key(|(start, _)| start.0)
-            .map(|(_, name)| name.0.to_string())
-    }
-
-    fn summary(&mut self, stopped: Option<Stop>) -> Summary {
-        let cost = self.cost();
-        let world = &self.world;
-        let recorder = world.resource::<Recorder>();
-        let events = world.resource::<EventLog>();
-        let largest_tension = recorder.largest_tension.map(|(tension_n, time_s, entity)| {
-            let (tether, segment) = segment_name(world, entity);
-            LargestTension {
-                tension_n,
-                time_s,
-                tether,
-                segment,
-            }
-        });
-        let has_segments = self.stable_step.step_s.is_finite();
-        Summary {
-            version: VERSION,
-            scene: self.scene.name.clone(),
-            seed: self.scene.seed,
-            formulation: self.scene.formulation,
-            integrator: self.scene.integrator.clone(),
-            stable_step_s: has_segments.then_some(self.stable_step.step_s),
-            stiffest_segment: has_segments.then(|| self.stable_step.segment.clone()),
-            steps: cost.steps,
-            rejected_steps: cost.rejected,
-            evaluations: cost.evaluations,
-            simulated_s: stopped.as_ref().map_or(self.time_s(), |stop| stop.time_s),
-            outcome: if stopped.is_some() { "stopped" } else { "done" },
-            stopped,
-            largest_tension,
-            events: events.events().iter().map(EventRow::from).collect(),
-            events_dropped: events.dropped(),
-            final_states: final_states(world),
-            warnings: warnings(world),
-        }
-    }
-}
-
-fn final_states(world: &World) -> Vec<FinalState> {
-    let bodies = world.resource::<SceneEntities>().in_order().iter();
-    bodies
-        .filter(|entity| world.get::<Body>(**entity).is_some())
-        .filter_map(|entity| {
-            Some(FinalState {
-                entity: world.get::<EntityName>(*entity)?.0.to_string(),
-                position_m: world.get::<Position>(*entity)?.0.to_array(),
-                velocity_m_s: world.get::<Velocity>(*entity)?.0.to_array(),
-                attitude: world.get::<Attitude>(*entity)?.0.to_array(),
-                rate_rad_s: world.get::<AngularVelocity>(*entity)?.0.to_array(),
-            })
-        })
-        .filter(|state| {
-            let numbers = state.position_m.iter().chain(&state.velocity_m_s);
-            numbers
-                .chain(&state.attitude)
-                .chain(&state.rate_rad_s)
-                .all(|x| x.is_finite())
-        })
-        .collect()
-}
-
-fn warnings(world: &World) -> Vec<String> {
-    world
-        .resource::<BeyondMorrison>()
-        .0
-        .iter()
-        .filter_map(|entity| world.get::<EntityName>(*entity))
-        .map(|name| {
-            format!(
-                "`{}` has been beyond Re = 1e6, where Morrison's drag coefficient ends; it was held",
-                name.0
-            )
-        })
-        .collect()
 }

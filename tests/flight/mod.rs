@@ -10,7 +10,9 @@ use aerobot::engine::scene::Scene;
 
 /// A scene of the repository.
 pub(crate) fn scene_file(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("scenes")
+        .join(name)
 }
 
 /// Overrides as the library takes them.
@@ -21,7 +23,12 @@ pub(crate) fn owned(overrides: &[&str]) -> Vec<String> {
 /// Loads a scene from text.
 pub(crate) fn load(simulator: &Simulator, text: &str, overrides: &[&str]) -> Scene {
     simulator
-        .load_text("test.ron", text.to_owned(), Path::new("."), &owned(overrides))
+        .load_text(
+            "test.ron",
+            text.to_owned(),
+            Path::new("."),
+            &owned(overrides),
+        )
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -42,7 +49,9 @@ pub(crate) fn fly_scene(name: &str, overrides: &[&str]) -> MemorySink {
 
 /// Flies a scene to its end.
 pub(crate) fn run(simulator: &Simulator, scene: &Scene) -> MemorySink {
-    let mut simulation = simulator.build(scene).unwrap_or_else(|error| panic!("{error}"));
+    let mut simulation = simulator
+        .build(scene)
+        .unwrap_or_else(|error| panic!("{error}"));
     let mut results = MemorySink::default();
     let summary = simulation.run(&mut results, &mut |_| {});
     assert_eq!(summary.outcome, "done", "{:?}", summary.stopped);

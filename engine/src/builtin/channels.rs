@@ -45,11 +45,19 @@ impl Plugin for ChannelsPlugin {
             .add_setup(set_up)
             .add_systems_if(Phase::Dynamics, records_energy, || nonconservative_power)
             .add_systems(Phase::Observe, || {
-                (accelerate_attachments, airspeed, attitude, swing, attachment_tension)
+                (
+                    accelerate_attachments,
+                    airspeed,
+                    attitude,
+                    swing,
+                    attachment_tension,
+                )
                     .chain()
                     .run_if(channels_due)
             })
-            .add_systems_if(Phase::Observe, records_energy, || energy.run_if(channels_due));
+            .add_systems_if(Phase::Observe, records_energy, || {
+                energy.run_if(channels_due)
+            });
     }
 }
 

@@ -20,6 +20,7 @@ use glam::{DQuat, DVec3};
 use super::Unplaced;
 use crate::evaluation::Evaluation;
 use crate::scene::{Scene, SetupError};
+use crate::stopping::owner_name;
 use crate::world::EntityName;
 
 /// What is free to find its place, with its place in the unknowns.
@@ -248,7 +249,7 @@ fn solve_shape(
     match (outcome, checked) {
         (Ok(_), Ok(())) => Ok(()),
         (Err(NewtonError::Evaluation(fault)), _) | (Ok(_), Err(fault)) => {
-            Err(no_equilibrium(world, fault.entity, &fault.message))
+            Err(fault_on_the_way(world, &fault))
         }
         (Err(NewtonError::Singular { site }), _) => Err(no_equilibrium(
             world,
@@ -320,6 +321,20 @@ impl Scales {
     }
 }
 
+/// The search left what can be evaluated; the cause is the fault, not the search.
+fn fault_on_the_way(world: &World, fault: &Fault) -> SetupError {
+    let name = fault.entity.and_then(|entity| owner_name(world, entity));
+    let path = name.as_ref().map_or_else(String::new, |name| {
+        format!("entities.{}", name.split('/').next().unwrap_or(""))
+    });
+    let who = name.map_or_else(String::new, |name| format!("`{name}`: "));
+    SetupError::new(
+        path,
+        format!("{who}{}", fault.message),
+        "static equilibrium in still air would put it there; give it a `Pose` to start elsewhere",
+    )
+}
+
 fn no_equilibrium(world: &World, entity: Option<Entity>, reason: &str) -> SetupError {
     let name = entity
         .and_then(|entity| world.get::<EntityName>(entity))
@@ -348,7 +363,7 @@ fn shift_altitudes(
     }
     evaluation
         .run(world)
-        .map_err(|fault| no_equilibrium(world, fault.entity, &fault.message))?;
+        .map_err(|fault| fault_on_the_way(world, &fault))?;
     let scales = Scales::of(world);
     let mut moved = false;
     for balloon in unplaced.floating.clone() {

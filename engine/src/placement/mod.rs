@@ -40,7 +40,10 @@ pub(crate) fn settle_in_wind(
         .query_filtered::<Entity, (With<crate::world::Free>, With<Attitude>)>()
         .iter(world)
         .collect();
-    let unplaced = Unplaced { bodies: free, floating: Vec::new() };
+    let unplaced = Unplaced {
+        bodies: free,
+        floating: Vec::new(),
+    };
     let wind = world.resource::<EnvironmentModel>().wind.clone();
     let (mut reached, mut part) = (0.0_f64, 1.0_f64);
     while reached < 1.0 {
@@ -78,7 +81,10 @@ fn check_held(world: &World, scene: &Scene) -> Result<(), SetupError> {
         if !held {
             return Err(SetupError::new(
                 format!("entities.{}", entity.name),
-                format!("`{}` is held by no anchor: it drifts with the wind", entity.name),
+                format!(
+                    "`{}` is held by no anchor: it drifts with the wind",
+                    entity.name
+                ),
                 "tether it to an entity with `Fixed`",
             ));
         }
@@ -104,7 +110,10 @@ impl Poses {
             .iter(world)
             .map(|(entity, attitude)| (entity, *attitude))
             .collect();
-        Self { positions, attitudes }
+        Self {
+            positions,
+            attitudes,
+        }
     }
 
     fn restore(self, world: &mut World) {

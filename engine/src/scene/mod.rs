@@ -6,6 +6,7 @@
 
 pub mod checks;
 pub mod load;
+mod reader;
 pub mod registry;
 pub mod source;
 pub mod tables;

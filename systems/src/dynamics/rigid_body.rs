@@ -39,7 +39,11 @@ pub struct CarriedMass {
 impl Default for CarriedMass {
     /// Nothing carried. (Not derived: the default of a matrix in glam is the identity.)
     fn default() -> Self {
-        Self { mass_kg: 0.0, first_moment_kg_m: DVec3::ZERO, inertia_kg_m2: DMat3::ZERO }
+        Self {
+            mass_kg: 0.0,
+            first_moment_kg_m: DVec3::ZERO,
+            inertia_kg_m2: DMat3::ZERO,
+        }
     }
 }
 

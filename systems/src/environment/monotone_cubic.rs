@@ -127,7 +127,9 @@ impl MonotoneCubic {
             c2: factor * piece.c2,
             c3: factor * piece.c3,
         });
-        Self { pieces: pieces.collect() }
+        Self {
+            pieces: pieces.collect(),
+        }
     }
 
     /// The Taylor coefficients (value, first, second / 2, third / 6) of the piece of `interval`

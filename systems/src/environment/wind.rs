@@ -120,13 +120,27 @@ impl WindSource {
 
     fn scaled(&self, factor: f64) -> Self {
         match self.clone() {
-            Self::Uniform { velocity_m_s } => Self::Uniform { velocity_m_s: factor * velocity_m_s },
-            Self::Shear { altitude_m, gradient_per_s, direction } => {
-                Self::Shear { altitude_m, gradient_per_s: factor * gradient_per_s, direction }
-            }
-            Self::Step { velocity_m_s, from_s, until_s } => {
-                Self::Step { velocity_m_s: factor * velocity_m_s, from_s, until_s }
-            }
+            Self::Uniform { velocity_m_s } => Self::Uniform {
+                velocity_m_s: factor * velocity_m_s,
+            },
+            Self::Shear {
+                altitude_m,
+                gradient_per_s,
+                direction,
+            } => Self::Shear {
+                altitude_m,
+                gradient_per_s: factor * gradient_per_s,
+                direction,
+            },
+            Self::Step {
+                velocity_m_s,
+                from_s,
+                until_s,
+            } => Self::Step {
+                velocity_m_s: factor * velocity_m_s,
+                from_s,
+                until_s,
+            },
             Self::Profile(profile) => Self::Profile(profile.scaled(factor)),
         }
     }
@@ -199,9 +213,8 @@ impl Wind {
     /// The same wind, `factor` times as strong.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
-        let scaled = |sources: &[WindSource]| {
-            sources.iter().map(|source| source.scaled(factor)).collect()
-        };
+        let scaled =
+            |sources: &[WindSource]| sources.iter().map(|source| source.scaled(factor)).collect();
         Self {
             level: scaled(&self.level),
             layered: scaled(&self.layered),
@@ -271,9 +284,19 @@ mod tests {
     #[test]
     fn a_scaled_wind_is_the_wind_times_the_factor() {
         let mut wind = Wind::new(vec![
-            WindSource::Uniform { velocity_m_s: DVec3::new(1.0, 2.0, 3.0) },
-            WindSource::Shear { altitude_m: 1e3, gradient_per_s: 1e-3, direction: DVec3::Y },
-            WindSource::Step { velocity_m_s: DVec3::Z, from_s: 0.0, until_s: 1.0 },
+            WindSource::Uniform {
+                velocity_m_s: DVec3::new(1.0, 2.0, 3.0),
+            },
+            WindSource::Shear {
+                altitude_m: 1e3,
+                gradient_per_s: 1e-3,
+                direction: DVec3::Y,
+            },
+            WindSource::Step {
+                velocity_m_s: DVec3::Z,
+                from_s: 0.0,
+                until_s: 1.0,
+            },
             WindSource::Profile(WindProfile::venus_zonal()),
         ]);
         wind.begin_interval(0.5);
