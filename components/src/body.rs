@@ -40,8 +40,8 @@ pub struct Pose {
 
 impl SceneComponent for Pose {
     const NAME: &'static str = "Pose";
-    const EXCLUDES: &'static [&'static str] = &["Fixed", "Moving"];
-    const REQUIRES: &'static [&'static [&'static str]] = &[&["Body"]];
+    const EXCLUDES: &'static [&'static str] = &["Moving"];
+    const REQUIRES: &'static [&'static [&'static str]] = &[&["Body", "Fixed"]];
 
     fn check(&self, report: &mut FieldReport) {
         report.finite_vector("position_m", self.position_m);
@@ -154,12 +154,15 @@ impl SceneComponent for Motion {
     }
 }
 
-/// An anchor: the entity, with whatever body it has, is held at this pose.
+/// An anchor: the entity, with whatever body it has, is held.
+///
+/// Where: at `position_m`; without it, at the entity's `Pose`, or where its `Sphere` floats.
 #[derive(Component, Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Fixed {
     /// Position in the inertial frame, m; z is the altitude.
-    pub position_m: DVec3,
+    #[serde(default)]
+    pub position_m: Option<DVec3>,
     /// Attitude, body to inertial; upright unless said.
     #[serde(default)]
     pub attitude: AttitudeSpec,
@@ -170,7 +173,9 @@ impl SceneComponent for Fixed {
     const EXCLUDES: &'static [&'static str] = &["Moving"];
 
     fn check(&self, report: &mut FieldReport) {
-        report.finite_vector("position_m", self.position_m);
+        if let Some(position_m) = self.position_m {
+            report.finite_vector("position_m", position_m);
+        }
         report.within("attitude", |report| self.attitude.check(report));
     }
 }

@@ -1,6 +1,6 @@
 //! Bodies and anchors: their state, weight and equations of motion.
 
-use aerobot_components::aerodynamics::{Sphere, SphereRadius};
+use aerobot_components::aerodynamics::{RadiusRule, Sphere, SphereRadius};
 use aerobot_components::body::{Anchor, Body, Fixed, Motion, Moving, Pose};
 use aerobot_components::scene_component::FieldReport;
 use aerobot_components::state::{
@@ -14,11 +14,11 @@ use aerobot_systems::dynamics::rigid_body::{CarriedMass, accelerate_bodies};
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::forces::weight::weight;
 use bevy_ecs::world::World;
-use glam::DQuat;
+use glam::{DQuat, DVec3};
 
 use crate::balloon_sizing::sphere_radii;
 use crate::plugin::{Plugin, Simulator};
-use crate::scene::{Scene, SetupError};
+use crate::scene::{Scene, SceneEntity, SetupError};
 use crate::schedule::Phase;
 use crate::world::{Free, SceneEntities};
 
@@ -34,6 +34,7 @@ impl Plugin for BodiesPlugin {
             .register_component::<Fixed>()
             .register_component::<Moving>()
             .add_check(check_inertia)
+            .add_check(check_held)
             .add_setup(set_up)
             .add_systems(Phase::Prepare, || clear_accumulators)
             .add_systems_for::<Moving, _, _>(Phase::Prepare, || move_anchors)
@@ -77,6 +78,47 @@ fn check_inertia(scene: &Scene, report: &mut FieldReport) {
     }
 }
 
+/// What is held must be held somewhere, and at one place.
+fn check_held(scene: &Scene, report: &mut FieldReport) {
+    for (entity, fixed) in scene.with::<Fixed>() {
+        let path = entity.path::<Fixed>();
+        let has_pose = entity.has::<Pose>();
+        if fixed.position_m.is_some() && has_pose {
+            report.add(
+                &path,
+                "`Fixed` and `Pose` both say where the entity is",
+                "leave `position_m` out of `Fixed`, or leave out the `Pose`",
+            );
+        } else if fixed.position_m.is_none() && !has_pose && floating_altitude_m(entity).is_none() {
+            report.add(
+                &path,
+                "`Fixed` needs a place to be held at",
+                "give `position_m`, or the entity a `Pose`",
+            );
+        }
+    }
+}
+
+/// The altitude at which the scene wants the entity's sphere to float, m.
+fn floating_altitude_m(entity: &SceneEntity) -> Option<f64> {
+    entity
+        .get::<Sphere>()?
+        .radius
+        .map(|RadiusRule::Equilibrium { altitude_m }| altitude_m)
+}
+
+/// Position (m) and attitude of a held entity.
+fn held_at(entity: &SceneEntity, fixed: &Fixed, pose: Option<&Pose>) -> (DVec3, DQuat) {
+    if let (None, Some(pose)) = (fixed.position_m, pose) {
+        return (pose.position_m, pose.attitude.quaternion());
+    }
+    let floating = || DVec3::new(0.0, 0.0, floating_altitude_m(entity).unwrap_or(0.0));
+    (
+        fixed.position_m.unwrap_or_else(floating),
+        fixed.attitude.quaternion(),
+    )
+}
+
 /// State of every body and anchor. Poses that are not given follow when all forces are known.
 fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
     let radii = sphere_radii(scene, &world.resource::<EnvironmentModel>().atmosphere)?;
@@ -96,7 +138,7 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
             continue;
         }
         let (position, attitude) = match (fixed, moving, entity.get::<Pose>()) {
-            (Some(fixed), ..) => (fixed.position_m, fixed.attitude.quaternion()),
+            (Some(fixed), _, pose) => held_at(entity, fixed, pose),
             (None, Some(moving), _) => (moving.position_m, DQuat::IDENTITY),
             (None, None, Some(pose)) => (pose.position_m, pose.attitude.quaternion()),
             (None, None, None) => Default::default(),

@@ -177,7 +177,7 @@ fn given_altitude(entity: &SceneEntity) -> Option<(&'static str, f64)> {
     let moving = entity.get::<Moving>();
     let pose = entity.get::<Pose>();
     fixed
-        .map(|fixed| ("Fixed.position_m", fixed.position_m.z))
+        .and_then(|fixed| Some(("Fixed.position_m", fixed.position_m?.z)))
         .or_else(|| moving.map(|moving| ("Moving.position_m", moving.position_m.z)))
         .or_else(|| pose.map(|pose| ("Pose.position_m", pose.position_m.z)))
 }
