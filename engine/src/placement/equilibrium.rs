@@ -18,10 +18,11 @@ use bevy_ecs::world::World;
 use glam::{DQuat, DVec3};
 
 use super::Unplaced;
+use crate::balloon_sizing::tethered_together;
 use crate::evaluation::Evaluation;
 use crate::scene::{Scene, SetupError};
 use crate::stopping::owner_name;
-use crate::world::EntityName;
+use crate::world::{EntityName, SceneEntities};
 
 /// What is free to find its place, with its place in the unknowns.
 #[derive(Clone, Copy, Debug)]
@@ -36,12 +37,19 @@ struct Site {
     attitude: DQuat,
 }
 
+/// A heading that nothing restores is held by this part of the weight times a metre per radian. Where
+/// tethers do restore it the hold is out of the result, for the last solution starts from the one
+/// before and has not turned from it.
+const HEADING_HOLD: f64 = 1e-6;
+
 /// Forces on the sites as a function of their displacements from the guess.
 struct Forces<'a> {
     world: &'a mut World,
     evaluation: &'a mut Evaluation,
     sites: &'a [Site],
     dimension: usize,
+    /// Stiffness against turning about the vertical away from the guess, N m/rad.
+    heading_hold_n_m: f64,
 }
 
 impl Residual for Forces<'_> {
@@ -69,7 +77,8 @@ impl Residual for Forces<'_> {
                 force.0.write_to_slice(&mut r[at..]);
             }
             if let (Some(at), Some(torque)) = (site.rotation, entity.get::<Torque>()) {
-                torque.0.write_to_slice(&mut r[at..]);
+                let held = DVec3::new(0.0, 0.0, self.heading_hold_n_m * x[at + 2]);
+                (torque.0 - held).write_to_slice(&mut r[at..]);
             }
         }
         Ok(())
@@ -107,8 +116,9 @@ pub(super) fn solve(
         let (sites, pattern) = sites(world, unplaced);
         if !sites.is_empty() {
             solve_shape(world, evaluation, &sites, &pattern)?;
+            solve_shape(world, evaluation, &sites_here(world, sites), &pattern)?;
         }
-        if !shift_altitudes(world, evaluation, unplaced)? {
+        if !shift_altitudes(world, evaluation, scene, unplaced)? {
             return Ok(());
         }
     }
@@ -120,6 +130,19 @@ pub(super) fn solve(
         ),
         "give the balloon a `Pose`",
     ))
+}
+
+/// The same sites, counted from where they stand now.
+fn sites_here(world: &World, mut sites: Vec<Site>) -> Vec<Site> {
+    for site in &mut sites {
+        site.position_m = world
+            .get::<Position>(site.entity)
+            .map_or(site.position_m, |p| p.0);
+        site.attitude = world
+            .get::<Attitude>(site.entity)
+            .map_or(site.attitude, |a| a.0);
+    }
+    sites
 }
 
 /// Bodies without a pose, and the nodes of tethers that start in equilibrium or hold such a body.
@@ -236,11 +259,13 @@ fn solve_shape(
         largest_iterations: 500,
     };
     let mut x = vec![0.0; dimension];
+    let heading_hold_n_m = HEADING_HOLD * scales.force_n;
     let mut problem = Forces {
         world,
         evaluation,
         sites,
         dimension,
+        heading_hold_n_m,
     };
     let outcome = DampedNewton::new(pattern).solve(&mut problem, &mut x, &settings);
     // The last trial need not be the solution: leave the solution in the components.
@@ -299,6 +324,11 @@ impl Scales {
             .iter(world)
             .map(|(_, p)| p.0.abs().max_element())
             .fold(1.0, f64::max);
+        let mut nodes = world.query_filtered::<&Mass, bevy_ecs::query::With<TetherNode>>();
+        let lightest_n = nodes
+            .iter(world)
+            .map(|mass| mass.0 * gravity.acceleration_m_s2(highest))
+            .fold(weight_n, f64::min);
         let mut tethers = world.query::<&Tether>();
         let length_m = tethers
             .iter(world)
@@ -314,7 +344,11 @@ impl Scales {
         Self {
             force_n,
             length_m: (0.25 * length_m).max(1.0),
-            difference_m: 1e-4 * shortest,
+            // Well within the stretch of the lightest part on the stiffest spring, so that a difference
+            // does not straddle the kink where that goes slack; well above round-off.
+            difference_m: (0.1 * lightest_n / stiffest.max(1e-9))
+                .min(1e-4 * shortest)
+                .max(1e3 * f64::EPSILON * highest),
             // Round-off of positions, seen through the stiffest spring.
             floor: 1e-10 + 16.0 * f64::EPSILON * highest * stiffest / force_n,
         }
@@ -356,6 +390,7 @@ fn no_equilibrium(world: &World, entity: Option<Entity>, reason: &str) -> SetupE
 fn shift_altitudes(
     world: &mut World,
     evaluation: &mut Evaluation,
+    scene: &Scene,
     unplaced: &Unplaced,
 ) -> Result<bool, SetupError> {
     if unplaced.floating.is_empty() {
@@ -371,7 +406,7 @@ fn shift_altitudes(
         if force.abs() <= 1e-10_f64.max(2.0 * scales.floor) * scales.force_n {
             continue;
         }
-        let slope = lift_slope_n_m(world);
+        let slope = lift_slope_n_m(world, scene, balloon);
         if slope >= 0.0 {
             return Err(no_equilibrium(
                 world,
@@ -389,14 +424,20 @@ fn shift_altitudes(
     Ok(moved)
 }
 
-/// Change of all lift with altitude, N/m.
-fn lift_slope_n_m(world: &mut World) -> f64 {
-    let mut lifted = world.query::<(&DisplacedVolume, &Position)>();
+/// Change with altitude of the lift of everything tethered together with `balloon`, N/m.
+fn lift_slope_n_m(world: &World, scene: &Scene, balloon: Entity) -> f64 {
     let environment = world.resource::<EnvironmentModel>();
-    lifted
-        .iter(world)
-        .map(|(volume, position)| {
-            let z = position.0.z;
+    let name = world.get::<EntityName>(balloon).map_or("", |name| &name.0);
+    tethered_together(scene, name)
+        .into_iter()
+        .filter_map(|name| world.resource::<SceneEntities>().get(name))
+        .filter_map(|id| {
+            Some((
+                world.get::<DisplacedVolume>(id)?,
+                world.get::<Position>(id)?.0.z,
+            ))
+        })
+        .map(|(volume, z)| {
             let slope = environment.atmosphere.density_slope(z).unwrap_or(0.0);
             slope * volume.0 * environment.gravity.acceleration_m_s2(z)
         })

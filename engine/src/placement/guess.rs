@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use aerobot_components::aerodynamics::{DisplacedVolume, RadiusRule, Sphere};
 use aerobot_components::body::Body;
-use aerobot_components::state::{Mass, Position};
+use aerobot_components::state::{Attitude, Inertia, Mass, Position};
 use aerobot_components::tether::{Attachment, Tether, TetherParts, TetherStart};
 use aerobot_systems::environment::EnvironmentModel;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 use super::attachment_position;
 use crate::balloon_sizing::{tethered_mass_kg, tethered_together};
@@ -21,7 +21,8 @@ struct Line {
     ends: [(Entity, DVec3); 2],
     length_m: f64,
     stiffness_n: f64,
-    mass_kg: f64,
+    /// Weight at the altitude of the highest thing that is placed, N: near enough for a guess.
+    weight_n: f64,
 }
 
 /// Places `bodies`; returns those whose altitude floats.
@@ -34,7 +35,7 @@ pub(super) fn place_bodies(
     let mut waiting: Vec<Entity> = bodies.to_vec();
     let mut floating = Vec::new();
     loop {
-        hang(world, &lines, &mut waiting);
+        hang(world, &lines, bodies, &mut waiting);
         let Some(&first) = waiting.first() else {
             return Ok(floating);
         };
@@ -49,6 +50,12 @@ pub(super) fn place_bodies(
 }
 
 fn lines(world: &mut World) -> Vec<Line> {
+    let gravity = world.resource::<EnvironmentModel>().gravity;
+    let mut positions = world.query::<&Position>();
+    let highest_m = positions
+        .iter(world)
+        .map(|position| position.0.z)
+        .fold(0.0, f64::max);
     let mut tethers = world.query::<(&Tether, &TetherParts)>();
     let found: Vec<_> = tethers
         .iter(world)
@@ -63,15 +70,16 @@ fn lines(world: &mut World) -> Vec<Line> {
                 ends: [end(first)?, end(last)?],
                 length_m: tether.length_m,
                 stiffness_n: tether.axial_stiffness_n,
-                mass_kg: tether.lumped_mass_kg(),
+                weight_n: tether.lumped_mass_kg() * gravity.acceleration_m_s2(highest_m),
             })
         })
         .collect();
     found
 }
 
-/// Hangs every waiting body that tethers join to a placed one, generation by generation.
-fn hang(world: &mut World, lines: &[Line], waiting: &mut Vec<Entity>) {
+/// Hangs every waiting body that tethers join to a placed one, generation by generation; `bodies` are
+/// all that may be turned.
+fn hang(world: &mut World, lines: &[Line], bodies: &[Entity], waiting: &mut Vec<Entity>) {
     let mut generations: Vec<Vec<(Entity, Vec<usize>)>> = Vec::new();
     let mut left = waiting.clone();
     loop {
@@ -89,9 +97,11 @@ fn hang(world: &mut World, lines: &[Line], waiting: &mut Vec<Entity>) {
         generations.push(next);
     }
     let loads = loads(world, lines, &generations);
+    turn(world, lines, bodies, &generations, &loads);
     for (body, holding) in generations.into_iter().flatten() {
         let load = loads.get(&body).copied().unwrap_or(0.0);
         let down = if load < 0.0 { DVec3::Z } else { DVec3::NEG_Z };
+        let attitude = world.get::<Attitude>(body).copied().unwrap_or_default();
         let count = holding.len() as f64;
         let mut place = DVec3::ZERO;
         for index in &holding {
@@ -99,13 +109,43 @@ fn hang(world: &mut World, lines: &[Line], waiting: &mut Vec<Entity>) {
             let (own, holder) = oriented(line, body);
             let top = attachment_position(world, holder.0, holder.1);
             let length = line.length_m * (1.0 + load.abs() / (count * line.stiffness_n));
-            place += (top + length * down - own.1) / count;
+            place += (top + length * down - attitude.0 * own.1) / count;
         }
         if let Some(mut position) = world.get_mut::<Position>(body) {
             position.0 = place;
         }
     }
     *waiting = left;
+}
+
+/// Turns bodies to where plumb lines hold them: upward forces f_i at places r_i make no torque if
+/// sum f_i r_i points up, and the shortest turn there leaves the heading alone.
+fn turn(
+    world: &mut World,
+    lines: &[Line],
+    bodies: &[Entity],
+    generations: &[Vec<(Entity, Vec<usize>)>],
+    loads: &BTreeMap<Entity, f64>,
+) {
+    let mut leans: BTreeMap<Entity, DVec3> = BTreeMap::new();
+    for (body, holding) in generations.iter().flatten() {
+        let up = loads.get(body).copied().unwrap_or(0.0) / holding.len() as f64;
+        for index in holding {
+            let line = &lines[*index];
+            let (own, holder) = oriented(line, *body);
+            *leans.entry(*body).or_default() += up * own.1;
+            *leans.entry(holder.0).or_default() -= (up + line.weight_n) * holder.1;
+        }
+    }
+    for body in bodies {
+        if world.get::<Inertia>(*body).is_none() {
+            continue;
+        }
+        let lean = leans.get(body).copied().and_then(DVec3::try_normalize);
+        if let (Some(lean), Some(mut attitude)) = (lean, world.get_mut::<Attitude>(*body)) {
+            attitude.0 = DQuat::from_rotation_arc(lean, DVec3::Z);
+        }
+    }
 }
 
 /// Lines that join `body` to something that is placed.
@@ -130,26 +170,10 @@ fn loads(
     lines: &[Line],
     generations: &[Vec<(Entity, Vec<usize>)>],
 ) -> BTreeMap<Entity, f64> {
-    let environment = world.resource::<EnvironmentModel>();
     let mut loads: BTreeMap<Entity, f64> = BTreeMap::new();
+    let altitudes = altitudes(world, lines, generations);
     for (body, holding) in generations.iter().rev().flatten() {
-        // The altitude of what holds it is near enough for a guess.
-        let altitude_m = holding.first().map_or(0.0, |index| {
-            let holder = oriented(&lines[*index], *body).1;
-            world
-                .get::<Position>(holder.0)
-                .map_or(0.0, |position| position.0.z)
-        });
-        let gravity = environment.gravity.acceleration_m_s2(altitude_m);
-        let density = environment
-            .atmosphere
-            .density_kg_m3(altitude_m)
-            .unwrap_or(0.0);
-        let mass = world.get::<Mass>(*body).map_or(0.0, |mass| mass.0);
-        let volume = world
-            .get::<DisplacedVolume>(*body)
-            .map_or(0.0, |volume| volume.0);
-        let own = gravity * (mass - density * volume);
+        let own = net_weight_n(world, *body, altitudes.get(body).copied().unwrap_or(0.0));
         let total = *loads
             .entry(*body)
             .and_modify(|load| *load += own)
@@ -157,11 +181,48 @@ fn loads(
         for index in holding {
             let line = &lines[*index];
             let holder = oriented(line, *body).1.0;
-            *loads.entry(holder).or_insert(0.0) +=
-                total / holding.len() as f64 + gravity * line.mass_kg;
+            *loads.entry(holder).or_insert(0.0) += total / holding.len() as f64 + line.weight_n;
         }
     }
     loads
+}
+
+/// Altitude in m at which each body is weighed: that of the placed thing at the top of its line, which
+/// is near enough for a guess.
+fn altitudes(
+    world: &World,
+    lines: &[Line],
+    generations: &[Vec<(Entity, Vec<usize>)>],
+) -> BTreeMap<Entity, f64> {
+    let mut altitudes: BTreeMap<Entity, f64> = BTreeMap::new();
+    for (body, holding) in generations.iter().flatten() {
+        let Some(holder) = holding
+            .first()
+            .map(|index| oriented(&lines[*index], *body).1.0)
+        else {
+            continue;
+        };
+        let placed = world
+            .get::<Position>(holder)
+            .map_or(0.0, |position| position.0.z);
+        let altitude_m = altitudes.get(&holder).copied().unwrap_or(placed);
+        altitudes.insert(*body, altitude_m);
+    }
+    altitudes
+}
+
+/// Weight less buoyancy of a body at an altitude in m, N.
+fn net_weight_n(world: &World, body: Entity, altitude_m: f64) -> f64 {
+    let environment = world.resource::<EnvironmentModel>();
+    let density = environment
+        .atmosphere
+        .density_kg_m3(altitude_m)
+        .unwrap_or(0.0);
+    let mass = world.get::<Mass>(body).map_or(0.0, |mass| mass.0);
+    let volume = world
+        .get::<DisplacedVolume>(body)
+        .map_or(0.0, |volume| volume.0);
+    environment.gravity.acceleration_m_s2(altitude_m) * (mass - density * volume)
 }
 
 /// The balloon that carries the system of `body`.
@@ -260,29 +321,62 @@ pub(super) fn place_on_line(world: &mut World, tether: Entity) {
     set_node_positions(world, tether, &positions);
 }
 
-/// As [`place_on_line`], but a line longer than its span sags: a parabola of sag f over the span d has
-/// the length d (1 + 8/3 (f/d)^2), a deep one rather that of two straight halves.
+/// As [`place_on_line`], but a line longer than its span hangs in its catenary
+/// z = a cosh((x - x0)/a) + c, with sinh(h/2a)/(h/2a) = sqrt(l^2 - v^2)/h for a line of length l over
+/// the horizontal distance h and the height v, and x0 = h/2 - a artanh(v/l) (Irvine 1981).
 fn place_sagging(world: &mut World, tether: Entity) {
     let Some((from, to, count)) = span(world, tether) else {
         return;
     };
-    let length = world
-        .get::<Tether>(tether)
-        .map_or(0.0, |tether| tether.length_m);
-    let distance = from.distance(to);
-    if length <= distance {
+    let Some(line) = world.get::<Tether>(tether) else {
+        return;
+    };
+    let (length, segments) = (line.length_m, f64::from(line.segments()));
+    if length <= from.distance(to) {
         return place_on_line(world, tether);
     }
-    let shallow = distance * (0.375 * (length / distance.max(1e-9 * length) - 1.0)).sqrt();
-    let deep = 0.5 * (length * length - distance * distance).sqrt();
-    let sag = shallow.min(deep);
+    let across = (to - from).with_z(0.0);
+    // Ends above one another: a narrow loop stands in for the folded line.
+    let h = across.length().max(1e-4 * length);
+    let direction = across.try_normalize().unwrap_or(DVec3::X);
+    let v = to.z - from.z;
+    let parameter = |l: f64| 0.5 * h / catenary_argument((l * l - v * v).sqrt() / h);
+    let a = parameter(length);
+    // Chords are shorter than arcs, and the line is stretched by its own weight: a line a little
+    // longer leaves every segment taut.
+    let weight_n_m = line.mass_kg() / length * STRETCHING_GRAVITY_M_S2;
+    let chord = (length / (segments * a)).powi(2) / 24.0;
+    let stretch = weight_n_m * (a + 0.5 * length) / line.axial_stiffness_n;
+    let l = length * (1.0 + chord.min(0.1) + stretch.min(0.1));
+    let a = parameter(l);
+    let x0 = 0.5 * h - a * libm::atanh(v / l);
+    let lowest = a * libm::sinh(x0 / a);
     let positions: Vec<DVec3> = (1..=count)
         .map(|number| {
-            let s = number as f64 / (count + 1) as f64;
-            from.lerp(to, s) - DVec3::Z * (4.0 * s * (1.0 - s) * sag)
+            let arc = l * number as f64 / (count + 1) as f64 - lowest;
+            let x = (x0 + a * libm::asinh(arc / a)) * across.length() / h;
+            let z = libm::hypot(a, arc) - libm::hypot(a, lowest);
+            from + x * direction + z * DVec3::Z
         })
         .collect();
     set_node_positions(world, tether, &positions);
+}
+
+/// Gravity for the stretch of a sagging guess, m/s^2: no planet of interest pulls much harder.
+const STRETCHING_GRAVITY_M_S2: f64 = 10.0;
+
+/// The x at which sinh(x)/x = `ratio`, for a ratio above one.
+fn catenary_argument(ratio: f64) -> f64 {
+    let (mut low, mut high) = (1e-9, 700.0);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if libm::sinh(middle) / middle < ratio {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
 }
 
 fn span(world: &World, tether: Entity) -> Option<(DVec3, DVec3, usize)> {

@@ -12,7 +12,10 @@
 //! J = J_0 + sum m_i (r_i^2 I - r_i r_i'), a linear and alpha angular acceleration, omega angular
 //! velocity, F and T force and torque about the reference point (Goldstein, Poole and Safko 2002,
 //! ch. 5; paper, sec. 3.1.2 and 3.3). Eliminating a leaves a symmetric 3x3 system:
-//! (J + [S]^2 / M) alpha = T - omega x (J omega) - S x (F - omega x (omega x S)) / M.
+//!
+//! ```text
+//! (J + [S]^2 / M) alpha = T - omega x (J omega) - S x (F - omega x (omega x S)) / M
+//! ```
 
 use aerobot_components::aerodynamics::AddedVolume;
 use aerobot_components::body::Anchor;

@@ -1,8 +1,8 @@
 //! The stiffest axial motion of a world's tethers, and the step it allows.
 //!
 //! In segment space the axial stretching modes are the eigenvectors of
-//! B_st = sqrt(k_s k_t) g_s' W g_t: g_s the direction of segment s on the points at its ends and W
-//! their mobility, 1/m for a node, 1/M I - [r] J^-1 [r] for a place r on a rigid body, nothing at an
+//! `B_st = sqrt(k_s k_t) g_s' W g_t`: g_s the direction of segment s on the points at its ends and W
+//! their mobility, 1/m for a node, `I/M - [r] J^-1 [r]` for a place r on a rigid body, nothing at an
 //! anchor. Its largest eigenvalue is lambda = omega^2 (1/s^2); with dampers c_s in place of k_s it is
 //! the largest damping rate gamma (1/s). Both by power iteration, O(N) each.
 
