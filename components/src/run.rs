@@ -33,23 +33,33 @@ impl RunSpec {
     pub fn check(&self, report: &mut FieldReport) {
         report.positive("duration_s", self.duration_s);
         report.positive("output_every_s", self.output_every_s);
-        if self.duration_s / self.output_every_s > MOST_OUTPUTS {
-            report.add(
-                "output_every_s",
-                format!(
-                    "{} s in steps of {} s are more than {MOST_OUTPUTS:e} outputs",
-                    self.duration_s, self.output_every_s
-                ),
-                "",
-            );
-        }
+        check_count(
+            "output_every_s",
+            self.duration_s,
+            self.output_every_s,
+            report,
+        );
         report.within("integrator", |report| self.integrator.check(report));
-        report.within("record", |report| self.record.check(report));
+        report.within("record", |report| {
+            self.record.check(self.duration_s, report)
+        });
     }
 }
 
 /// More outputs than this in one run are a slip of the pen.
-const MOST_OUTPUTS: f64 = 1e9;
+const MOST_OUTPUTS: f64 = 1e8;
+
+fn check_count(path: &str, duration_s: f64, period_s: f64, report: &mut FieldReport) {
+    if duration_s / period_s > MOST_OUTPUTS {
+        report.add(
+            path,
+            format!(
+                "{duration_s} s in steps of {period_s} s are more than {MOST_OUTPUTS:e} outputs"
+            ),
+            "",
+        );
+    }
+}
 
 /// The equations that move tethers.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
@@ -163,7 +173,7 @@ pub struct RecordSpec {
 }
 
 impl RecordSpec {
-    fn check(&self, report: &mut FieldReport) {
+    fn check(&self, duration_s: f64, report: &mut FieldReport) {
         for (field, cadence) in [
             ("bodies", self.bodies),
             ("nodes", self.nodes),
@@ -171,7 +181,9 @@ impl RecordSpec {
             ("channels_at", self.channels_at),
         ] {
             if let Cadence::Every { period_s } = cadence {
-                report.positive(&format!("{field}.period_s"), period_s);
+                let path = format!("{field}.period_s");
+                report.positive(&path, period_s);
+                check_count(&path, duration_s, period_s, report);
             }
         }
     }

@@ -27,10 +27,16 @@ impl Simulation {
                 )
             })
             .collect();
+        lines.push(format!(
+            "air: {:?}, gravity: {:?}, {} source(s) of wind",
+            scene.environment.atmosphere,
+            scene.environment.gravity,
+            scene.environment.wind.len()
+        ));
         let stable = self.stable_step();
         if stable.step_s.is_finite() {
             lines.push(format!(
-                "largest stable step of RK4: {:.4e} s, set by segment `{}`",
+                "largest stable step of RK4 for the tethers: {:.4e} s, set by segment `{}`",
                 stable.step_s, stable.segment
             ));
         }

@@ -95,17 +95,29 @@ pub fn run_into(
     }
     let simulation = simulator.build(scene).map_err(RunError::Scene)?;
     let as_run = scene_as_run(scene).map_err(RunError::Scene)?;
-    prepare_folder(folder, &as_run)?;
-    record(simulation, folder, progress).map_err(|error| RunError::Io(folder.clone(), error))
+    let is_new = !folder.exists();
+    let prepared = prepare_folder(folder, &as_run).and_then(|()| {
+        CsvSink::create(folder).map_err(|error| RunError::Io(folder.clone(), error))
+    });
+    match prepared {
+        Ok(sink) => Ok(record(simulation, sink, folder, progress)),
+        Err(error) => {
+            // Refused means that nothing was written.
+            if is_new {
+                let _ = fs::remove_dir_all(folder);
+            }
+            Err(error)
+        }
+    }
 }
 
 fn record(
     mut simulation: Simulation,
+    mut sink: CsvSink,
     folder: &Path,
     progress: &mut dyn FnMut(f64),
-) -> io::Result<FinishedRun> {
+) -> FinishedRun {
     let (wall, cpu) = (Instant::now(), thread_cpu_time());
-    let mut sink = CsvSink::create(folder)?;
     let mut summary = simulation.run(&mut sink, progress);
     let flushed = sink.flush();
     if let (Err(error), None) = (&flushed, &summary.stopped) {
@@ -121,9 +133,12 @@ fn record(
             0.0
         },
     };
-    write_json(&folder.join("summary.json"), &summary)?;
-    write_json(&folder.join("timing.json"), &timing)?;
-    Ok(FinishedRun { summary, timing })
+    let written = write_json(&folder.join("summary.json"), &summary)
+        .and_then(|()| write_json(&folder.join("timing.json"), &timing));
+    if let (Err(error), None) = (&written, &summary.stopped) {
+        summary.stop(format!("the summary cannot be written: {error}"));
+    }
+    FinishedRun { summary, timing }
 }
 
 /// CPU time of the calling thread.
@@ -185,6 +200,11 @@ fn prepare_folder(folder: &Path, scene: &SceneAsRun) -> Result<(), RunError> {
         move |error| RunError::Io(path, error)
     };
     fs::create_dir_all(folder).map_err(at(folder))?;
+    for path in FILES.map(|file| folder.join(file)) {
+        if path.is_dir() {
+            return Err(at(&path)(io::ErrorKind::IsADirectory.into()));
+        }
+    }
     for file in FILES {
         let path = folder.join(file);
         match fs::remove_file(&path) {
@@ -204,5 +224,11 @@ fn prepare_folder(folder: &Path, scene: &SceneAsRun) -> Result<(), RunError> {
 fn write_json(path: &Path, value: &impl Serialize) -> io::Result<()> {
     let mut text = serde_json::to_string_pretty(value)?;
     text.push('\n');
-    fs::write(path, text)
+    // Whole or not at all.
+    let part = path.with_extension("json.part");
+    fs::write(&part, text)
+        .and_then(|()| fs::rename(&part, path))
+        .inspect_err(|_| {
+            let _ = fs::remove_file(&part);
+        })
 }

@@ -17,7 +17,9 @@ use glam::{DMat3, DVec3};
 
 use crate::world::EntityName;
 
-/// The largest step that fixed-step RK4 takes without growth, and what limits it.
+/// The largest step that fixed-step RK4 takes without growth on the axial motion of the tethers, and
+/// what limits it. Drag and fast spin are not in it: they limit a step far later in any flight of a
+/// balloon.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StableStep {
     /// The step, s; infinite where no tether is.
@@ -32,10 +34,17 @@ pub(crate) fn find(world: &mut World) -> StableStep {
     let (points, bodies) = mobilities(world);
     let spring = stiffest_spring(&segments, &points, &bodies);
     let damper = stiffest_damper(&segments, &points, &bodies);
-    let step_s = largest_stable_step_s(spring.eigenvalue, damper.eigenvalue);
-    let limiting = if largest_stable_step_s(0.0, damper.eigenvalue)
-        < largest_stable_step_s(spring.eigenvalue, 0.0)
-    {
+    // Where damping is proportional to stiffness both belong to one mode; else the stiffest spring and
+    // the stiffest damper may be at home in different modes, and each also counts alone.
+    let by_spring = largest_stable_step_s(spring.eigenvalue, 0.0);
+    let by_damper = largest_stable_step_s(0.0, damper.eigenvalue);
+    let together = largest_stable_step_s(spring.eigenvalue, damper.eigenvalue);
+    let step_s = if damping_is_proportional(&segments) {
+        together
+    } else {
+        together.min(by_spring).min(by_damper)
+    };
+    let limiting = if by_damper < by_spring {
         damper.segment
     } else {
         spring.segment
@@ -44,6 +53,17 @@ pub(crate) fn find(world: &mut World) -> StableStep {
         step_s,
         segment: names.get(limiting).cloned().unwrap_or_default(),
     }
+}
+
+/// Whether all segments have the same ratio of damping to stiffness.
+fn damping_is_proportional(segments: &[StiffSegment]) -> bool {
+    let ratio = |segment: &StiffSegment| segment.damping_n_s_m / segment.stiffness_n_m;
+    let Some(first) = segments.first().map(ratio) else {
+        return true;
+    };
+    segments
+        .iter()
+        .all(|segment| (ratio(segment) - first).abs() <= 1e-9 * first.abs())
 }
 
 fn segments(world: &mut World) -> (Vec<StiffSegment>, Vec<String>) {

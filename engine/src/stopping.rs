@@ -15,6 +15,10 @@ impl Simulation {
     /// What a step that could not be taken from `time_s` means for a reader.
     pub(crate) fn explain(&mut self, failure: &StepFailure, time_s: f64) -> Stop {
         let remedy = match self.step_s {
+            Some(step_s) if self.stable_step.step_s.is_infinite() => format!(
+                "; the step is {step_s:.4e} s and no tether limits it, but drag or spin may: choose a \
+                 shorter step, or `Adaptive()`"
+            ),
             Some(step_s) => format!(
                 "; the step is {step_s:.4e} s and the largest stable one was {:.4e} s at the start \
                  (segment `{}`): choose a shorter step, or `Adaptive()`",

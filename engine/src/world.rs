@@ -109,7 +109,7 @@ pub struct EventLog {
 pub struct Event {
     /// When, s.
     pub time_s: f64,
-    /// What: a word such as `slack` or `gust`.
+    /// What: a word such as `slack` or `taut`.
     pub kind: String,
     /// To which entity.
     pub entity: String,

@@ -6,16 +6,16 @@ use std::process::ExitCode;
 use aerobot_engine::plugin::Simulator;
 use aerobot_engine::scene::SceneError;
 
-use super::{CheckArguments, REFUSED};
+use super::{CheckArguments, REFUSED, complain, say};
 
 pub(super) fn check(simulator: &Simulator, arguments: &CheckArguments) -> ExitCode {
     let overrides = arguments.overrides.as_overrides();
     let mut refused = false;
     for scene in &arguments.scenes {
         match describe(simulator, scene, &overrides) {
-            Ok(text) => print!("{text}"),
+            Ok(text) => say(text.trim_end()),
             Err(error) => {
-                eprintln!("{error}");
+                complain(error);
                 refused = true;
             }
         }

@@ -5,6 +5,7 @@
 mod check;
 mod run;
 
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -42,10 +43,10 @@ struct SceneArguments {
     #[arg(long, value_enum)]
     formulation: Option<FormulationName>,
     /// Seed of the random draws.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Simulated time at which to end, s.
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     until: Option<f64>,
 }
 
@@ -98,6 +99,16 @@ impl SceneArguments {
         overrides.extend(self.until.map(|until| format!("run.duration_s={until:?}")));
         overrides
     }
+}
+
+/// Prints a line, if anyone listens: a closed pipe is no reason to fail.
+fn say(line: impl std::fmt::Display) {
+    let _ = writeln!(std::io::stdout(), "{line}");
+}
+
+/// Prints a line to stderr, if anyone listens.
+fn complain(line: impl std::fmt::Display) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 /// Runs the command line with plugins beside the built-in ones.

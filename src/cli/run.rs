@@ -10,13 +10,13 @@ use aerobot_engine::recording::summary::{Summary, Timing};
 use aerobot_engine::run_folder::{Destination, run_into};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{REFUSED, RunArguments, STOPPED};
+use super::{REFUSED, RunArguments, STOPPED, complain, say};
 
 pub(super) fn run(simulator: &Simulator, arguments: &RunArguments) -> ExitCode {
     let scene = match simulator.load(&arguments.scene, &arguments.overrides.as_overrides()) {
         Ok(scene) => scene,
         Err(error) => {
-            eprintln!("{error}");
+            complain(error);
             return ExitCode::from(REFUSED);
         }
     };
@@ -36,18 +36,19 @@ pub(super) fn run(simulator: &Simulator, arguments: &RunArguments) -> ExitCode {
     let finished = match finished {
         Ok(finished) => finished,
         Err(error) => {
-            eprintln!("{error}");
+            complain(error);
             return ExitCode::from(REFUSED);
         }
     };
     for warning in &finished.summary.warnings {
-        eprintln!("warning: {warning}");
+        complain(format_args!("warning: {warning}"));
     }
     if !arguments.quiet {
-        println!(
-            "{}",
-            line(&finished.summary, &finished.timing, &destination.folder)
-        );
+        say(line(
+            &finished.summary,
+            &finished.timing,
+            &destination.folder,
+        ));
     }
     match &finished.summary.stopped {
         None => ExitCode::SUCCESS,
@@ -56,11 +57,14 @@ pub(super) fn run(simulator: &Simulator, arguments: &RunArguments) -> ExitCode {
                 .entity
                 .as_ref()
                 .map_or_else(String::new, |name| format!(" `{name}`:"));
-            eprintln!("error: stopped at {} s:{who} {}", stop.time_s, stop.reason);
-            eprintln!(
+            complain(format_args!(
+                "error: stopped at {} s:{who} {}",
+                stop.time_s, stop.reason
+            ));
+            complain(format_args!(
                 "  = note: what was recorded is in `{}`",
                 destination.folder.display()
-            );
+            ));
             ExitCode::from(STOPPED)
         }
     }

@@ -13,4 +13,7 @@ pub struct Clock {
     pub time_s: f64,
     /// Start of the interval of smooth motion that contains it, s.
     pub interval_start_s: f64,
+    /// Whether everything is held at rest, as while static equilibrium is sought: anchors stand where
+    /// their path starts.
+    pub at_rest: bool,
 }

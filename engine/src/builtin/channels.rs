@@ -169,43 +169,61 @@ fn wanted(
     }
 }
 
-/// Finds what each body hangs from, once everything is placed: the tether whose other end is highest
-/// above its own.
+/// Finds what each body hangs from, once everything is placed: the carrier of the attachment highest
+/// above the body's own, by all tethers between the two.
 pub(crate) fn find_supports(world: &mut World) {
-    let mut supports: BTreeMap<Entity, (f64, Support)> = BTreeMap::new();
+    let mut hangings: Vec<Hanging> = Vec::new();
     let mut tethers = world.query::<&TetherParts>();
     for parts in tethers.iter(world) {
-        let (Some(&first), Some(&last)) = (parts.points.first(), parts.points.last()) else {
-            continue;
-        };
-        let height = |point| {
-            world
-                .get::<Position>(point)
-                .map_or(0.0, |position| position.0.z)
-        };
-        let rise = height(first) - height(last);
-        let (above, below) = if rise >= 0.0 {
-            (first, last)
-        } else {
-            (last, first)
-        };
-        let Some(hung) = world.get::<Attachment>(below).map(|end| end.carrier) else {
-            continue;
-        };
-        if world.get::<Anchor>(hung).is_some() || rise == 0.0 {
-            continue;
-        }
-        let found = (rise.abs(), Support { above, below });
-        match supports.get(&hung) {
-            Some((known, _)) if *known >= found.0 => {}
-            _ => {
-                supports.insert(hung, found);
-            }
+        hangings.extend(hanging(world, parts));
+    }
+    let mut supports: BTreeMap<Entity, (Hanging, Support)> = BTreeMap::new();
+    for found in &hangings {
+        let highest = supports
+            .get(&found.body)
+            .is_none_or(|(known, _)| found.rise_m > known.rise_m);
+        if highest {
+            let together = hangings
+                .iter()
+                .filter(|other| other.body == found.body && other.support == found.support);
+            let (above, below) = together.map(|other| (other.above, other.below)).unzip();
+            supports.insert(found.body, (*found, Support { above, below }));
         }
     }
     for (body, (_, support)) in supports {
         world.entity_mut(body).insert(support);
     }
+}
+
+/// A body that hangs from a support by one tether.
+#[derive(Clone, Copy)]
+struct Hanging {
+    body: Entity,
+    support: Entity,
+    above: Entity,
+    below: Entity,
+    rise_m: f64,
+}
+
+fn hanging(world: &World, parts: &TetherParts) -> Option<Hanging> {
+    let (first, last) = (*parts.points.first()?, *parts.points.last()?);
+    let height = |point| world.get::<Position>(point).map(|position| position.0.z);
+    let rise = height(first)? - height(last)?;
+    let (above, below) = if rise >= 0.0 {
+        (first, last)
+    } else {
+        (last, first)
+    };
+    let body = world.get::<Attachment>(below)?.carrier;
+    let support = world.get::<Attachment>(above)?.carrier;
+    let hangs = rise != 0.0 && world.get::<Anchor>(body).is_none();
+    hangs.then_some(Hanging {
+        body,
+        support,
+        above,
+        below,
+        rise_m: rise.abs(),
+    })
 }
 
 /// Whether a channel of this name is a built-in one.

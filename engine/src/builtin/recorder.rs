@@ -57,9 +57,16 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// The next time at which something is due, s.
+    /// The next time at which something is due, s. A multiple of a period that misses the end of the
+    /// run by round-off is the end.
     #[must_use]
     pub fn next_s(&self) -> f64 {
+        let next_s = self.next_sample_s();
+        let is_end = (next_s - self.end_s).abs() <= 1e-12 * self.end_s;
+        if is_end { self.end_s } else { next_s }
+    }
+
+    fn next_sample_s(&self) -> f64 {
         [&self.bodies, &self.nodes, &self.tethers, &self.channels]
             .into_iter()
             .flatten()

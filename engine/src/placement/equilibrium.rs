@@ -380,7 +380,7 @@ fn no_equilibrium(world: &World, entity: Option<Entity>, reason: &str) -> SetupE
         });
     SetupError::new(
         path,
-        format!("{name} finds no static equilibrium in still air: {reason}"),
+        format!("{name} finds no static equilibrium: {reason}"),
         "give the bodies a `Pose`, and slack tethers a `start: Straight`",
     )
 }

@@ -13,6 +13,7 @@ use aerobot_components::state::{
     AngularVelocity, Attitude, ChartAttitude, Origin, Position, Velocity,
 };
 use aerobot_components::tether::{Tether, TetherNode, TetherStart};
+use aerobot_systems::clock::Clock;
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::environment::wind::Wind;
 use bevy_ecs::entity::Entity;
@@ -177,7 +178,9 @@ fn in_still_air<R>(world: &mut World, work: impl FnOnce(&mut World) -> R) -> R {
         let old_rate = rate.map(|mut rate| std::mem::take(&mut *rate));
         motions.push((entity, std::mem::take(&mut *velocity), old_rate));
     }
+    world.resource_mut::<Clock>().at_rest = true;
     let result = work(world);
+    world.resource_mut::<Clock>().at_rest = false;
     for (entity, velocity, rate) in motions {
         let mut entity = world.entity_mut(entity);
         entity.insert(velocity);

@@ -15,6 +15,10 @@ pub fn move_anchors(
         let omega = path.frequency_rad_s;
         let (sin, cos) = libm::sincos(omega * clock.time_s + path.phase_rad);
         position.0 = path.position_m + path.velocity_m_s * clock.time_s + path.amplitude_m * sin;
+        if clock.at_rest {
+            (velocity.0, acceleration.0) = Default::default();
+            continue;
+        }
         velocity.0 = path.velocity_m_s + path.amplitude_m * (omega * cos);
         acceleration.0 = -path.amplitude_m * (omega * omega * sin);
     }

@@ -7,9 +7,10 @@
 //! Every piece of the cubic f is cut into equal cells so small that |s1 t|, |s2|^(1/2) t and
 //! |s3|^(1/3) t stay below 0.003 about the centre x_c of a cell; there the Taylor series ends below
 //! round-off: what it leaves out is at most about 2 x 0.003^6 = 1.5e-15 where the cubic bends most,
-//! and 0.003^6/720 = 1e-18 where it is nearly straight, as the logarithm of a density is. Even and odd terms are summed apart, so that no operation waits for more
-//! than three others. The density of the air at every segment of a tether is the most frequent
-//! look-up of a run, and a call of exp would take most of it.
+//! and 0.003^6/720 = 1e-18 where it is nearly straight, as the logarithm of a density is. Even and
+//! odd terms are summed apart, so that no operation waits for more than three others. The density of
+//! the air at every segment of a tether is the most frequent look-up of a run, and a call of exp would
+//! take most of it.
 
 use super::knots::Knots;
 use super::monotone_cubic::MonotoneCubic;

@@ -1,5 +1,5 @@
 //! Swing of a body about its support: the angle between the vertical and the line from where it hangs
-//! to what it hangs from, and the parts of that angle along x and y (rad).
+//! to what it hangs from (the means of the attachments, where several tethers join the two), and the parts of that angle along x and y (rad).
 
 use aerobot_components::state::Position;
 use bevy_ecs::component::Component;
@@ -16,13 +16,13 @@ pub const SWING_X: &str = "swing_x_rad";
 /// Name of the channel of its part along y.
 pub const SWING_Y: &str = "swing_y_rad";
 
-/// What a body hangs from.
-#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
+/// What a body hangs from: the tethers that join it to one support, found at the start of a run.
+#[derive(Component, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Support {
-    /// The attachment above.
-    pub above: Entity,
-    /// The attachment on the body itself.
-    pub below: Entity,
+    /// The attachments above.
+    pub above: Vec<Entity>,
+    /// Those on the body itself.
+    pub below: Vec<Entity>,
 }
 
 /// Records the swing of every body that hangs and asks for it.
@@ -32,12 +32,8 @@ pub fn swing(
     positions: Query<&Position>,
 ) {
     for (entity, channels, support) in &bodies {
-        let (Ok(above), Ok(below)) = (positions.get(support.above), positions.get(support.below))
-        else {
-            continue;
-        };
         // Displaced along +x means swung towards +x.
-        let hanging = below.0 - above.0;
+        let hanging = mean(&positions, &support.below) - mean(&positions, &support.above);
         for (channel, value) in [
             (SWING, swing_rad(hanging)),
             (SWING_X, libm::atan2(hanging.x, -hanging.z)),
@@ -48,6 +44,16 @@ pub fn swing(
             }
         }
     }
+}
+
+/// Mean position of `points`, m.
+fn mean(positions: &Query<&Position>, points: &[Entity]) -> DVec3 {
+    let sum: DVec3 = points
+        .iter()
+        .filter_map(|point| positions.get(*point).ok())
+        .map(|p| p.0)
+        .sum();
+    sum / points.len() as f64
 }
 
 /// Angle between the downward vertical and `hanging`, rad.

@@ -118,8 +118,37 @@ fn apply_one(edited: &mut EditedText, root: &Node, change: &Override) -> Result<
                 Ok(())
             }
         },
-        Some(_) => Err(no_part(node, change, reached, edited.text())),
+        Some(missing) => match nested(node, change, reached, missing) {
+            Some(whole) => apply_one(edited, root, &whole),
+            None => Err(no_part(node, change, reached, edited.text())),
+        },
     }
+}
+
+/// The same change as that of a whole block which the text leaves to its defaults: `run.record.nodes=x`
+/// as `run.record=(nodes: x)`. Only in a struct, whose fields the typed parser will judge, and not
+/// where a name that exists is near: that is a slip of the pen.
+fn nested(node: &Node, change: &Override, reached: usize, missing: &[Segment]) -> Option<Override> {
+    let (first, inner) = missing.split_first()?;
+    let is_struct = matches!(node.kind, Kind::Struct { .. });
+    if !is_struct || nearest(&first.plain(), node.names()).is_some() {
+        return None;
+    }
+    let mut value_text = change.value_text.clone();
+    for segment in inner.iter().rev() {
+        let Segment::Name(name) = segment else {
+            return None;
+        };
+        value_text = is_name(name).then(|| format!("({name}: {value_text})"))?;
+    }
+    let path = change.path.head(reached + 1);
+    let original = format!("{path}={value_text}");
+    Some(Override {
+        value_offset: original.len() - value_text.len(),
+        path,
+        value_text,
+        original,
+    })
 }
 
 /// Says which part of a path does not exist.

@@ -179,15 +179,24 @@ fn a_path_that_leads_nowhere_names_the_part_that_does_not_exist() {
             "there is no `density_kg_m3` in `environment.atmosphere`, which is the name `Vira` \
              without parts",
         ),
-        (
-            "entities.balloon.Buoyancy.a.b=1",
-            "there is no `a` in `entities.balloon.Buoyancy`",
-        ),
         ("run.\"a b\"=1", "`a b` cannot be the name of a field"),
         ("run.0=1", "`0` cannot be the name of a field"),
     ] {
         assert_eq!(refusal(SCENE, argument), message, "{argument}");
     }
+}
+
+/// A block that the scene leaves to its defaults is written as far as the path needs it.
+#[test]
+fn a_field_of_a_block_that_is_not_written_brings_the_block() {
+    let edited = text_after(
+        SCENE,
+        &["run.record.nodes=Never", "run.record.bodies=Output"],
+    );
+    assert!(
+        edited.contains("record: (nodes: Never, bodies: Output)"),
+        "{edited}"
+    );
 }
 
 #[test]
