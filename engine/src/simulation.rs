@@ -236,13 +236,14 @@ impl Simulation {
         &self.stable_step
     }
 
-    /// Runs Evaluate on the components as they are: for measurements, and after changes by hand.
+    /// Runs Evaluate on the components as they are, `count` times: for measurements, and once after
+    /// changes by hand.
     ///
     /// # Errors
     /// The fault that a system reported.
-    pub fn evaluate(&mut self) -> Result<(), Fault> {
+    pub fn evaluate(&mut self, count: usize) -> Result<(), Fault> {
         with_integration(&mut self.world, |world, integration| {
-            integration.evaluation.run(world)
+            (0..count).try_for_each(|_| integration.evaluation.run(world))
         })
         .unwrap_or(Ok(()))
     }

@@ -5,11 +5,10 @@ use aerobot_components::body::{Fixed, Moving, Pose};
 use aerobot_components::environment::{AtmosphereSpec, Environment, WindSpec};
 use aerobot_components::scene_component::FieldReport;
 use aerobot_systems::environment::EnvironmentModel;
-use aerobot_systems::environment::air_at::{air_at_bodies, air_at_segments};
+use aerobot_systems::environment::air_at::air_at_entities;
 use aerobot_systems::environment::atmosphere::Atmosphere;
 use aerobot_systems::environment::wind::{Wind, WindSource};
 use aerobot_systems::environment::wind_profile::WindProfile;
-use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::world::World;
 
 use crate::plugin::{Plugin, Simulator};
@@ -27,9 +26,7 @@ impl Plugin for EnvironmentPlugin {
             .add_check(check_temperature)
             .add_check(check_altitudes)
             .add_setup(set_up)
-            .add_systems(Phase::Environment, || {
-                (air_at_bodies, air_at_segments).chain()
-            });
+            .add_systems(Phase::Environment, || air_at_entities);
     }
 }
 

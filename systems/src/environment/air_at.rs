@@ -4,30 +4,23 @@ use aerobot_components::segment::{Segment, SegmentGeometry};
 use aerobot_components::state::{Air, Position};
 use bevy_ecs::change_detection::DetectChangesMut;
 use bevy_ecs::entity::Entity;
-use bevy_ecs::query::Without;
+use bevy_ecs::query::{With, Without};
 use bevy_ecs::system::{Query, Res, ResMut};
 
 use super::EnvironmentModel;
 use super::atmosphere::Atmosphere;
 use crate::fault::FaultSlot;
 
-/// Finds the air at bodies.
-pub fn air_at_bodies(
+/// Finds the air at bodies and at the midpoints of segments.
+pub fn air_at_entities(
     environment: Res<EnvironmentModel>,
     mut faults: ResMut<FaultSlot>,
     mut bodies: Query<(Entity, &Position, &mut Air), Without<Segment>>,
+    mut segments: Query<(Entity, &SegmentGeometry, &mut Air), With<Segment>>,
 ) {
     for (entity, position, mut air) in &mut bodies {
         *air = air_at(&environment, position.0.z, entity, &mut faults);
     }
-}
-
-/// Finds the air at the midpoints of segments.
-pub fn air_at_segments(
-    environment: Res<EnvironmentModel>,
-    mut faults: ResMut<FaultSlot>,
-    mut segments: Query<(Entity, &SegmentGeometry, &mut Air)>,
-) {
     let (atmosphere, wind) = (&environment.atmosphere, &environment.wind);
     // Told apart once, not at every segment: the look-up is the hottest of a run.
     if let (Atmosphere::Table(table), false) = (atmosphere, wind.depends_on_altitude()) {
