@@ -3,7 +3,6 @@
 
 use std::collections::BTreeMap;
 
-use aerobot_components::aerodynamics::DisplacedVolume;
 use aerobot_components::segment::{KelvinVoigt, Segment};
 use aerobot_components::state::{Attitude, Force, Inertia, Mass, Position, Torque};
 use aerobot_components::tether::{Attachment, Tether, TetherNode, TetherParts, TetherStart};
@@ -17,12 +16,11 @@ use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
 use glam::{DQuat, DVec3};
 
-use super::Unplaced;
-use crate::balloon_sizing::tethered_together;
+use super::{Unplaced, floating};
 use crate::evaluation::Evaluation;
 use crate::scene::{Scene, SetupError};
 use crate::stopping::owner_name;
-use crate::world::{EntityName, SceneEntities};
+use crate::world::EntityName;
 
 /// What is free to find its place, with its place in the unknowns.
 #[derive(Clone, Copy, Debug)]
@@ -118,7 +116,7 @@ pub(super) fn solve(
             solve_shape(world, evaluation, &sites, &pattern)?;
             solve_shape(world, evaluation, &sites_here(world, sites), &pattern)?;
         }
-        if !shift_altitudes(world, evaluation, scene, unplaced)? {
+        if !floating::shift_altitudes(world, evaluation, scene, unplaced)? {
             return Ok(());
         }
     }
@@ -305,15 +303,15 @@ fn solve_shape(
 }
 
 /// Sizes that make the problem dimensionless.
-struct Scales {
-    force_n: f64,
+pub(super) struct Scales {
+    pub(super) force_n: f64,
     length_m: f64,
     difference_m: f64,
-    floor: f64,
+    pub(super) floor: f64,
 }
 
 impl Scales {
-    fn of(world: &mut World) -> Self {
+    pub(super) fn of(world: &mut World) -> Self {
         let gravity = world.resource::<EnvironmentModel>().gravity;
         let mut masses = world.query::<(&Mass, &Position)>();
         let weight_n: f64 = masses
@@ -356,7 +354,7 @@ impl Scales {
 }
 
 /// The search left what can be evaluated; the cause is the fault, not the search.
-fn fault_on_the_way(world: &World, fault: &Fault) -> SetupError {
+pub(super) fn fault_on_the_way(world: &World, fault: &Fault) -> SetupError {
     let name = fault.entity.and_then(|entity| owner_name(world, entity));
     let path = name.as_ref().map_or_else(String::new, |name| {
         format!("entities.{}", name.split('/').next().unwrap_or(""))
@@ -369,7 +367,7 @@ fn fault_on_the_way(world: &World, fault: &Fault) -> SetupError {
     )
 }
 
-fn no_equilibrium(world: &World, entity: Option<Entity>, reason: &str) -> SetupError {
+pub(super) fn no_equilibrium(world: &World, entity: Option<Entity>, reason: &str) -> SetupError {
     let name = entity
         .and_then(|entity| world.get::<EntityName>(entity))
         .map_or_else(|| "the scene".to_owned(), |name| format!("`{}`", name.0));
@@ -383,63 +381,4 @@ fn no_equilibrium(world: &World, entity: Option<Entity>, reason: &str) -> SetupE
         format!("{name} finds no static equilibrium: {reason}"),
         "give the bodies a `Pose`, and slack tethers a `start: Straight`",
     )
-}
-
-/// Moves each floating system towards the altitude where no vertical force remains on its balloon;
-/// says whether one moved.
-fn shift_altitudes(
-    world: &mut World,
-    evaluation: &mut Evaluation,
-    scene: &Scene,
-    unplaced: &Unplaced,
-) -> Result<bool, SetupError> {
-    if unplaced.floating.is_empty() {
-        return Ok(false);
-    }
-    evaluation
-        .run(world)
-        .map_err(|fault| fault_on_the_way(world, &fault))?;
-    let scales = Scales::of(world);
-    let mut moved = false;
-    for balloon in unplaced.floating.clone() {
-        let force = world.get::<Force>(balloon).map_or(0.0, |force| force.0.z);
-        if force.abs() <= 1e-10_f64.max(2.0 * scales.floor) * scales.force_n {
-            continue;
-        }
-        let slope = lift_slope_n_m(world, scene, balloon);
-        if slope >= 0.0 {
-            return Err(no_equilibrium(
-                world,
-                Some(balloon),
-                &format!("{force:.3e} N of lift remain, and no altitude changes that"),
-            ));
-        }
-        let shift = (-force / slope).clamp(-1000.0, 1000.0);
-        // Its load follows in the next solution.
-        if let Some(mut position) = world.get_mut::<Position>(balloon) {
-            position.0.z += shift;
-        }
-        moved = true;
-    }
-    Ok(moved)
-}
-
-/// Change with altitude of the lift of everything tethered together with `balloon`, N/m.
-fn lift_slope_n_m(world: &World, scene: &Scene, balloon: Entity) -> f64 {
-    let environment = world.resource::<EnvironmentModel>();
-    let name = world.get::<EntityName>(balloon).map_or("", |name| &name.0);
-    tethered_together(scene, name)
-        .into_iter()
-        .filter_map(|name| world.resource::<SceneEntities>().get(name))
-        .filter_map(|id| {
-            Some((
-                world.get::<DisplacedVolume>(id)?,
-                world.get::<Position>(id)?.0.z,
-            ))
-        })
-        .map(|(volume, z)| {
-            let slope = environment.atmosphere.density_slope(z).unwrap_or(0.0);
-            slope * volume.0 * environment.gravity.acceleration_m_s2(z)
-        })
-        .sum()
 }

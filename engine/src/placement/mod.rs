@@ -6,7 +6,9 @@
 //! its horizontal place is x = y = 0.
 
 mod equilibrium;
+mod floating;
 mod guess;
+mod nodes;
 
 use aerobot_components::body::{Anchor, Pose};
 use aerobot_components::state::{
@@ -143,7 +145,7 @@ pub(crate) fn place(
 ) -> Result<(), SetupError> {
     let bodies = bodies_without_pose(world, scene);
     let floating = guess::place_bodies(world, scene, &bodies)?;
-    guess::place_nodes(world);
+    nodes::place_nodes(world);
     let unplaced = Unplaced { bodies, floating };
     in_still_air(world, |world| {
         equilibrium::solve(world, evaluation, scene, &unplaced)
@@ -203,9 +205,9 @@ fn place_given_nodes(world: &mut World) {
     for (tether, start) in given {
         match start {
             TetherStart::Equilibrium => {}
-            TetherStart::Straight => guess::place_on_line(world, tether),
+            TetherStart::Straight => nodes::place_on_line(world, tether),
             TetherStart::Positions(positions) => {
-                guess::set_node_positions(world, tether, &positions);
+                nodes::set_node_positions(world, tether, &positions);
             }
         }
     }
