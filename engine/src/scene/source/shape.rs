@@ -100,6 +100,9 @@ fn no_name(failure: &Failure<'_>, place: &Place<'_>) -> Diagnostic {
             format!("the values of `{name}` need their names: `{name}(name: value, ..)`")
         }
         Kind::Tuple { .. } => format!("expected named fields `(name: value, ..)`, found {found}"),
+        Kind::Struct { name: None, fields } if !fields.is_empty() => {
+            format!("a choice begins with its name, as `Name(name: value, ..)`; found {found}")
+        }
         _ => format!("expected a name, found {found}"),
     };
     failure.at_node(message, (node, &place.path))
