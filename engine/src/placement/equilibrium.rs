@@ -269,35 +269,32 @@ fn solve_shape(
     // The last trial need not be the solution: leave the solution in the components.
     let mut residual = vec![0.0; dimension];
     let checked = problem.residual(&x, &mut residual);
-    match (outcome, checked) {
-        (Ok(_), Ok(())) => Ok(()),
-        (Err(NewtonError::Evaluation(fault)), _) | (Ok(_), Err(fault)) => {
-            Err(fault_on_the_way(world, &fault))
+    outcome
+        .map_err(|error| failure(world, sites, scales.force_n, error))
+        .and(checked.map_err(|fault| fault_on_the_way(world, &fault)))
+}
+
+/// What a failed search means for a reader; residuals count in parts of `force_n`.
+fn failure(world: &World, sites: &[Site], force_n: f64, error: NewtonError<Fault>) -> SetupError {
+    match error {
+        NewtonError::Evaluation(fault) => fault_on_the_way(world, &fault),
+        NewtonError::Singular { site } => {
+            let entity = sites.get(site).map(|site| site.entity);
+            no_equilibrium(world, entity, "nothing holds it")
         }
-        (Err(NewtonError::Singular { site }), _) => Err(no_equilibrium(
-            world,
-            sites.get(site).map(|site| site.entity),
-            "nothing holds it",
-        )),
-        (
-            Err(NewtonError::NotConverged {
-                largest_residual,
-                worst_unknown,
-                ..
-            }),
-            _,
-        ) => {
+        NewtonError::NotConverged {
+            largest_residual,
+            worst_unknown,
+            ..
+        } => {
             let holds =
                 |at: Option<usize>| at.is_some_and(|at| (at..at + 3).contains(&worst_unknown));
             let site = sites
                 .iter()
                 .find(|site| holds(site.translation) || holds(site.rotation));
-            let force = largest_residual * scales.force_n;
-            Err(no_equilibrium(
-                world,
-                site.map(|site| site.entity),
-                &format!("a force of {force:.3e} N remains on it"),
-            ))
+            let force = largest_residual * force_n;
+            let reason = format!("a force of {force:.3e} N remains on it");
+            no_equilibrium(world, site.map(|site| site.entity), &reason)
         }
     }
 }
