@@ -68,11 +68,14 @@ impl Drop for Scratch {
 
 /// Every file of a folder with its contents.
 fn contents(folder: &Path) -> BTreeMap<String, String> {
-    let files = fs::read_dir(folder).unwrap().map(|entry| {
-        let path = entry.unwrap().path();
-        let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        (name, fs::read_to_string(path).unwrap())
-    });
+    let files = fs::read_dir(folder)
+        .unwrap()
+        .filter(|entry| entry.as_ref().is_ok_and(|entry| entry.path().is_file()))
+        .map(|entry| {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            (name, fs::read_to_string(path).unwrap())
+        });
     files.collect()
 }
 
@@ -139,17 +142,7 @@ fn every_expected_message_has_its_scene() {
 }
 
 /// A body that falls through the air below the end of the atmosphere at 0 m.
-const FALLING: &str = r#"(
-    name: "falling",
-    entities: {
-        "stone": (
-            Body: (mass_kg: 1000),
-            Drag: Constant(coefficient: 0.5, area_m2: 0.1),
-            Pose: (position_m: (0, 0, 200)),
-        ),
-    },
-    run: (duration_s: 100, output_every_s: 0.5, record: (channels: All)),
-)"#;
+const FALLING: &str = include_str!("bad_scenes/while_running/falls_out_of_the_air.ron");
 
 #[test]
 fn an_output_folder_that_exists_is_left_as_it_is() {
@@ -178,6 +171,26 @@ fn an_output_folder_that_exists_is_left_as_it_is() {
     assert_ne!(contents(&out.0)["states.csv"], "the work of a week\n");
 }
 
+/// A scene that stops while it runs.
+fn while_running(name: &str) -> String {
+    format!("tests/bad_scenes/while_running/{name}.ron")
+}
+
+/// A scene of that folder stops with the text of its `.txt`, in which `OUT` is the output folder.
+fn check_while_running(scene: &str, message: &str) {
+    let Some(name) = scene.strip_prefix("tests/bad_scenes/while_running/") else {
+        return;
+    };
+    let expected = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/bad_scenes/while_running")
+        .join(name)
+        .with_extension("txt");
+    if std::env::var_os("AEROBOT_BLESS").is_some() {
+        fs::write(&expected, message).unwrap();
+    }
+    assert_eq!(message, fs::read_to_string(&expected).unwrap());
+}
+
 /// Runs a scene that stops, and checks the message, the summary and that every number is finite.
 /// Gives the message and the rows of `states.csv`.
 fn run_until_it_stops(scene: &str, entity: &str) -> (String, Vec<Vec<f64>>) {
@@ -185,6 +198,7 @@ fn run_until_it_stops(scene: &str, entity: &str) -> (String, Vec<Vec<f64>>) {
     let run = aerobot(&["run", scene, "--out", out.text()]);
     let message = stderr(&run);
     assert_eq!(run.status.code(), Some(3), "{message}");
+    check_while_running(scene, &message.replace(out.text(), "OUT"));
     assert!(message.contains(&format!("`{entity}`")), "{message}");
 
     let files = contents(&out.0);
@@ -230,8 +244,7 @@ fn run_until_it_stops(scene: &str, entity: &str) -> (String, Vec<Vec<f64>>) {
 
 #[test]
 fn a_body_that_falls_out_of_the_atmosphere_stops_the_run() {
-    let scratch = Scratch::new();
-    let (message, rows) = run_until_it_stops(&scratch.file("scene.ron", FALLING), "stone");
+    let (message, rows) = run_until_it_stops(&while_running("falls_out_of_the_air"), "stone");
     assert!(message.contains("outside the atmosphere"), "{message}");
     let last_m = rows.last().unwrap()[3];
     assert!(
@@ -242,30 +255,7 @@ fn a_body_that_falls_out_of_the_atmosphere_stops_the_run() {
 
 #[test]
 fn a_balloon_that_rises_beyond_its_table_stops_the_run() {
-    let scratch = Scratch::new();
-    scratch.file(
-        "air.csv",
-        "altitude_m,density_kg_m3\n50000,1.594\n52000,1.284\n54000,1.019\n",
-    );
-    let scene = scratch.file(
-        "scene.ron",
-        r#"(
-            name: "rising",
-            environment: (atmosphere: Table(file: "air.csv")),
-            entities: {
-                "balloon": (
-                    Body: (mass_kg: 10, inertia: ThinSphere),
-                    Sphere: (radius_m: 2),
-                    Buoyancy: (),
-                    AddedMass: (),
-                    Drag: Constant(coefficient: 0.47),
-                    Pose: (position_m: (0, 0, 53_900)),
-                ),
-            },
-            run: (duration_s: 500, output_every_s: 0.5),
-        )"#,
-    );
-    let (message, rows) = run_until_it_stops(&scene, "balloon");
+    let (message, rows) = run_until_it_stops(&while_running("rises_beyond_its_table"), "balloon");
     assert!(message.contains("54000"), "{message}");
     let last_m = rows.last().unwrap()[3];
     assert!(

@@ -248,7 +248,8 @@ fn depth_errors_m(
     errors
 }
 
-/// A separate program gave 0.2416, 0.0615, 0.0155, 0.0039 m.
+/// A separate program gave 0.2416, 0.0615, 0.0155, 0.0039 m, half a percent above the shooting solution
+/// of the same line; hence the 1 % beside the 1e-5 m of the shooting.
 #[test]
 fn half_segment_lumping_is_of_second_order() {
     let mass = towline::mass_kg();
@@ -266,7 +267,7 @@ fn half_segment_lumping_is_of_second_order() {
     }
 }
 
-/// A separate program gave 1.02, 0.453, 0.212, 0.102 m.
+/// A separate program gave 1.02, 0.453, 0.212, 0.102 m: three digits.
 #[test]
 fn interior_lumping_is_of_first_order() {
     let mass = towline::mass_kg();

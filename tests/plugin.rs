@@ -9,17 +9,19 @@
 #[path = "../examples/atmosphere_sensor/plugin.rs"]
 mod sensor;
 
+mod flight;
+
 use std::path::{Path, PathBuf};
 
 use aerobot::components::scene_component::{FieldReport, SceneComponent};
 use aerobot::components::state::Force;
 use aerobot::engine::plugin::{Plugin, Simulator};
 use aerobot::engine::recording::frame::MemorySink;
-use aerobot::engine::scene::Scene;
 use aerobot::engine::schedule::Phase;
 use aerobot::systems::environment::atmosphere::Atmosphere;
 use bevy_ecs::component::Component;
 use bevy_ecs::system::Query;
+use flight::run;
 use glam::DVec3;
 use sensor::{AtmosphereSensorPlugin, PRESSURE, TEMPERATURE};
 use serde::Deserialize;
@@ -37,14 +39,6 @@ fn simulator() -> Simulator {
     let mut simulator = Simulator::new();
     simulator.add_plugin(&AtmosphereSensorPlugin);
     simulator
-}
-
-fn run(simulator: &Simulator, scene: &Scene) -> MemorySink {
-    let mut simulation = simulator.build(scene).unwrap_or_else(|e| panic!("{e}"));
-    let mut sink = MemorySink::default();
-    let summary = simulation.run(&mut sink, &mut |_| {});
-    assert_eq!(summary.stopped, None);
-    sink
 }
 
 /// The shipped scene with overrides, run.

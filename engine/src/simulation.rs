@@ -219,11 +219,6 @@ impl Simulation {
         &self.world
     }
 
-    /// The world, to be changed before the run.
-    pub fn world_mut(&mut self) -> &mut World {
-        &mut self.world
-    }
-
     /// Time of the current state, s.
     #[must_use]
     pub fn time_s(&self) -> f64 {
@@ -236,8 +231,7 @@ impl Simulation {
         &self.stable_step
     }
 
-    /// Runs Evaluate on the components as they are, `count` times: for measurements, and once after
-    /// changes by hand.
+    /// Runs Evaluate on the components as they are, `count` times: for measurements.
     ///
     /// # Errors
     /// The fault that a system reported.

@@ -8,9 +8,7 @@ use aerobot_components::state::{AddedInertia, Attitude, Inertia, Mass};
 use aerobot_components::tether::{Attachment, TetherPoint};
 use aerobot_systems::dynamics::rigid_body::CarriedMass;
 use aerobot_systems::integration::stability::largest_stable_step_s;
-use aerobot_systems::integration::stable_step::{
-    BodyMobility, Mobility, StiffSegment, stiffest_damper, stiffest_spring,
-};
+use aerobot_systems::integration::stable_step::{BodyMobility, Mobility, StiffSegment, stiffest};
 use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
 use glam::{DMat3, DVec3};
@@ -32,8 +30,8 @@ pub struct StableStep {
 pub(crate) fn find(world: &mut World) -> StableStep {
     let (segments, names) = segments(world);
     let (points, bodies) = mobilities(world);
-    let spring = stiffest_spring(&segments, &points, &bodies);
-    let damper = stiffest_damper(&segments, &points, &bodies);
+    let spring = stiffest(&segments, &points, &bodies, |segment| segment.stiffness_n_m);
+    let damper = stiffest(&segments, &points, &bodies, |segment| segment.damping_n_s_m);
     // Where damping is proportional to stiffness both belong to one mode; else the stiffest spring and
     // the stiffest damper may be at home in different modes, and each also counts alone.
     let by_spring = largest_stable_step_s(spring.eigenvalue, 0.0);

@@ -57,3 +57,16 @@ pub(crate) fn run(simulator: &Simulator, scene: &Scene) -> MemorySink {
     assert_eq!(summary.outcome, "done", "{:?}", summary.stopped);
     results
 }
+
+/// `actual` must be `expected` to `tolerance`, relative; prints how well it is.
+pub(crate) fn assert_relative(what: &str, actual: f64, expected: f64, tolerance: f64) {
+    let error = (actual / expected - 1.0).abs();
+    println!("{what}: {actual:.12}, expected {expected:.12}, relative error {error:.1e}");
+    assert!(error < tolerance, "{what}: {actual}, expected {expected}");
+}
+
+/// `error` must be below `bound`; prints it.
+pub(crate) fn assert_below(what: &str, error: f64, bound: f64) {
+    println!("{what}: {error:.1e}, allowed {bound:.1e}");
+    assert!(error < bound, "{what}: {error:.3e}, allowed {bound:.1e}");
+}

@@ -53,7 +53,10 @@ pub(crate) fn settle_in_wind(
         let target = (reached + part).min(1.0);
         let before = Poses::of(world);
         world.resource_mut::<EnvironmentModel>().wind = wind.scaled(target);
-        match equilibrium::solve(world, evaluation, scene, &unplaced) {
+        let solved = at_rest(world, |world| {
+            equilibrium::solve(world, evaluation, scene, &unplaced)
+        });
+        match solved {
             Ok(()) => {
                 reached = target;
                 part *= 2.0;
@@ -171,6 +174,13 @@ fn in_still_air<R>(world: &mut World, work: impl FnOnce(&mut World) -> R) -> R {
         &mut world.resource_mut::<EnvironmentModel>().wind,
         Wind::still(),
     );
+    let result = at_rest(world, work);
+    world.resource_mut::<EnvironmentModel>().wind = wind;
+    result
+}
+
+/// Runs `work` with everything at rest, then gives everything its motion again.
+fn at_rest<R>(world: &mut World, work: impl FnOnce(&mut World) -> R) -> R {
     let mut moving = world.query_filtered::<(Entity, &mut Velocity, Option<&mut AngularVelocity>), Or<(
         With<TetherNode>,
         With<Attitude>,
@@ -190,7 +200,6 @@ fn in_still_air<R>(world: &mut World, work: impl FnOnce(&mut World) -> R) -> R {
             entity.insert(rate);
         }
     }
-    world.resource_mut::<EnvironmentModel>().wind = wind;
     result
 }
 

@@ -57,30 +57,18 @@ pub struct Stiffest {
 
 const ITERATIONS: usize = 300;
 
-/// The largest squared frequency of axial motion.
+/// The largest eigenvalue with the `strength` of each segment as its weight: the squared frequency of
+/// axial motion (1/s^2) by stiffness in N/m, the damping rate (1/s) by damping in N s/m.
 #[must_use]
-pub fn stiffest_spring(
+pub fn stiffest(
     segments: &[StiffSegment],
     points: &[Mobility],
     bodies: &[BodyMobility],
+    strength: impl Fn(&StiffSegment) -> f64,
 ) -> Stiffest {
     let weights: Vec<f64> = segments
         .iter()
-        .map(|segment| segment.stiffness_n_m.sqrt())
-        .collect();
-    power_iteration(segments, points, bodies, &weights)
-}
-
-/// The largest damping rate of axial motion.
-#[must_use]
-pub fn stiffest_damper(
-    segments: &[StiffSegment],
-    points: &[Mobility],
-    bodies: &[BodyMobility],
-) -> Stiffest {
-    let weights: Vec<f64> = segments
-        .iter()
-        .map(|segment| segment.damping_n_s_m.sqrt())
+        .map(|segment| strength(segment).sqrt())
         .collect();
     power_iteration(segments, points, bodies, &weights)
 }
@@ -175,6 +163,10 @@ fn apply(
 mod tests {
     use super::*;
 
+    fn by_stiffness(segment: &StiffSegment) -> f64 {
+        segment.stiffness_n_m
+    }
+
     fn segment(from_point: usize, stiffness_n_m: f64) -> StiffSegment {
         StiffSegment {
             from_point,
@@ -195,7 +187,7 @@ mod tests {
         points[n + 1] = Mobility::Held;
         let angle = n as f64 * std::f64::consts::PI / (2.0 * (n as f64 + 1.0));
         let expected = 4.0 * k / m * angle.sin().powi(2);
-        let found = stiffest_spring(&segments, &points, &[]).eigenvalue;
+        let found = stiffest(&segments, &points, &[], by_stiffness).eigenvalue;
         assert!((found / expected - 1.0).abs() < 2e-3, "{found} {expected}");
     }
 
@@ -213,7 +205,7 @@ mod tests {
                 arm_m: DVec3::new(3.0, 0.0, 0.0),
             },
         ];
-        let found = stiffest_spring(&[segment(0, 100.0)], &points, &bodies).eigenvalue;
+        let found = stiffest(&[segment(0, 100.0)], &points, &bodies, by_stiffness).eigenvalue;
         let expected = 100.0 * (0.25 + 9.0 / 2.0);
         assert!((found / expected - 1.0).abs() < 2e-3, "{found} {expected}");
     }
