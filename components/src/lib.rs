@@ -7,6 +7,7 @@
 
 pub mod aerodynamics;
 pub mod body;
+pub mod derivatives;
 pub mod environment;
 pub mod inertia;
 pub mod run;

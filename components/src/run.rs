@@ -87,6 +87,25 @@ impl Formulation {
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(rename = "integrator", deny_unknown_fields)]
 pub enum IntegratorSpec {
+    /// Implicit where tethers are stiff, explicit where that is cheaper, with steps chosen for an
+    /// accuracy.
+    Auto {
+        /// Wanted accuracy of positions at the end, m.
+        #[serde(default = "IntegratorSpec::accuracy_m")]
+        accuracy_m: f64,
+        /// Longest step, s; without limit unless given.
+        #[serde(default)]
+        longest_step_s: Option<f64>,
+    },
+    /// Implicit throughout (ROS34PW2), with steps chosen for an accuracy.
+    Implicit {
+        /// Wanted accuracy of positions at the end, m.
+        #[serde(default = "IntegratorSpec::accuracy_m")]
+        accuracy_m: f64,
+        /// Longest step, s; without limit unless given.
+        #[serde(default)]
+        longest_step_s: Option<f64>,
+    },
     /// Dormand-Prince 5(4) with step control.
     Adaptive {
         /// Largest error of a step, relative to 1 m, 1 m/s, 1 rad, 1 rad/s, or to the displacement
@@ -97,30 +116,61 @@ pub enum IntegratorSpec {
         #[serde(default)]
         longest_step_s: Option<f64>,
     },
-    /// Classical Runge-Kutta of fourth order with a fixed step.
+    /// A fixed step.
     Fixed {
         /// The step, s; a safe fraction of the largest stable one unless given.
         #[serde(default)]
         step_s: Option<f64>,
+        /// The method.
+        #[serde(default)]
+        method: FixedMethod,
     },
+}
+
+/// Methods with a fixed step.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename = "method")]
+pub enum FixedMethod {
+    /// The classical Runge-Kutta method of fourth order.
+    #[default]
+    RungeKutta4,
+    /// ROS34PW2, linearly implicit, of third order: stable with any step.
+    Rosenbrock,
 }
 
 impl Default for IntegratorSpec {
     fn default() -> Self {
-        Self::Adaptive {
-            relative_tolerance: Self::relative_tolerance(),
+        Self::Auto {
+            accuracy_m: Self::accuracy_m(),
             longest_step_s: None,
         }
     }
 }
 
 impl IntegratorSpec {
+    fn accuracy_m() -> f64 {
+        1e-3
+    }
+
     fn relative_tolerance() -> f64 {
         1e-8
     }
 
     fn check(&self, report: &mut FieldReport) {
         match *self {
+            Self::Auto {
+                accuracy_m,
+                longest_step_s,
+            }
+            | Self::Implicit {
+                accuracy_m,
+                longest_step_s,
+            } => {
+                report.positive("accuracy_m", accuracy_m);
+                if let Some(longest_step_s) = longest_step_s {
+                    report.positive("longest_step_s", longest_step_s);
+                }
+            }
             Self::Adaptive {
                 relative_tolerance,
                 longest_step_s,
@@ -139,11 +189,15 @@ impl IntegratorSpec {
                     report.positive("longest_step_s", longest_step_s);
                 }
             }
-            Self::Fixed { step_s } => {
-                if let Some(step_s) = step_s {
-                    report.positive("step_s", step_s);
-                }
-            }
+            Self::Fixed { step_s, method } => match step_s {
+                Some(step_s) => report.positive("step_s", step_s),
+                None if method == FixedMethod::Rosenbrock => report.add(
+                    "step_s",
+                    "`Rosenbrock` is stable with any step, so the step must be given",
+                    "give `step_s`, or use `Implicit()`, which chooses its steps",
+                ),
+                None => {}
+            },
         }
     }
 }

@@ -7,11 +7,15 @@ use aerobot_systems::clock::Clock;
 use aerobot_systems::dynamics::state_vector::StateVector;
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::fault::{Fault, FaultSlot};
-use aerobot_systems::integration::{Equations, Integrator, StepFailure, Trajectory};
+use aerobot_systems::integration::{
+    Equations, Integrator, MechanicalEnergy, StepFailure, Trajectory,
+};
 use bevy_ecs::resource::Resource;
 use bevy_ecs::schedule::Schedule;
+use bevy_ecs::system::SystemId;
 use bevy_ecs::world::World;
 
+use crate::linearisation::Linearisation;
 use crate::world::{Discontinuity, Edges};
 
 /// The Evaluate schedule with what carries states to and from it.
@@ -20,6 +24,13 @@ pub struct Evaluation {
     pub(crate) schedule: Schedule,
     /// Gathers and scatters states.
     pub(crate) state: StateVector,
+}
+
+/// Derivatives and solutions for implicit steps.
+pub(crate) struct Implicit {
+    pub(crate) linearisation: Linearisation,
+    /// Measures the energy of the world.
+    pub(crate) energy: SystemId<(), MechanicalEnergy>,
 }
 
 impl Evaluation {
@@ -42,6 +53,8 @@ pub struct WorldEquations<'a> {
     pub world: &'a mut World,
     /// Its Evaluate schedule.
     pub evaluation: &'a mut Evaluation,
+    /// Its derivatives, for implicit steps.
+    pub(crate) implicit: &'a mut Implicit,
 }
 
 impl Equations for WorldEquations<'_> {
@@ -56,12 +69,47 @@ impl Equations for WorldEquations<'_> {
     fn accept(&mut self, state: &mut [f64], rates: &mut [f64]) {
         self.evaluation.state.recentre(self.world, state, rates);
     }
+
+    fn linearise(&mut self) {
+        self.implicit.linearisation.linearise(self.world);
+    }
+
+    fn factorise(&mut self, step_s: f64, gamma: f64) -> Result<(), usize> {
+        self.implicit.linearisation.factorise(step_s, gamma)
+    }
+
+    fn solve(&mut self, r: &mut [f64]) {
+        self.implicit.linearisation.solve(r);
+    }
+
+    fn position_error(&mut self, error: &[f64], tolerance_m: f64) -> (f64, usize) {
+        self.implicit
+            .linearisation
+            .position_error(error, tolerance_m)
+    }
+
+    fn strain_error(&mut self, error: &[f64]) -> (f64, usize) {
+        self.implicit.linearisation.strain_error(error)
+    }
+
+    fn has_slack(&self) -> bool {
+        self.implicit.linearisation.has_slack
+    }
+
+    fn energy(&mut self) -> MechanicalEnergy {
+        // It was registered when the simulation was built, and takes nothing that could be missing.
+        self.world
+            .run_system(self.implicit.energy)
+            .unwrap_or_default()
+    }
 }
 
 /// What the integration of one run consists of.
 pub struct Integration {
     /// The world's equations.
     pub evaluation: Evaluation,
+    /// What implicit steps need besides.
+    pub(crate) implicit: Implicit,
     /// The method.
     pub integrator: Box<dyn Integrator>,
     /// The state on its way.
@@ -130,6 +178,7 @@ fn restore(world: &mut World, integration: &mut Integration) {
 fn advance(world: &mut World, integration: &mut Integration) -> Result<(), StepFailure> {
     let Integration {
         evaluation,
+        implicit,
         integrator,
         trajectory,
         limit_s,
@@ -142,12 +191,20 @@ fn advance(world: &mut World, integration: &mut Integration) -> Result<(), StepF
     begin_interval(world, trajectory);
     if trajectory.time_s < *limit_s {
         world.resource_mut::<Clock>().interval_start_s = trajectory.time_s;
-        let mut equations = WorldEquations { world, evaluation };
+        let mut equations = WorldEquations {
+            world,
+            evaluation,
+            implicit,
+        };
         integrator.step(&mut equations, trajectory, *limit_s)?;
         begin_interval(world, trajectory);
     }
     // On an edge the accepted state is seen with what holds from the edge on.
-    trajectory.refresh(&mut WorldEquations { world, evaluation })
+    trajectory.refresh(&mut WorldEquations {
+        world,
+        evaluation,
+        implicit,
+    })
 }
 
 /// Enters the interval that starts at the present, if the present is an edge.

@@ -5,6 +5,8 @@ pub mod balloon_sizing;
 pub mod builtin;
 pub mod contents;
 pub mod evaluation;
+mod integrator_choice;
+mod linearisation;
 pub mod placement;
 pub mod plugin;
 pub mod recording;

@@ -13,6 +13,9 @@
 //! 3. [`Phase::Forces`]: every law adds to forces, torques and segment loads.
 //! 4. [`Phase::Dynamics`]: segment loads go to their ends, and everything is accelerated.
 //!
+//! **Linearise**, once per implicit step, on the accepted state:
+//! 1. [`Phase::Derivatives`]: stiff laws say how their forces change with position and velocity.
+//!
 //! Within a phase, systems run in the order in which they were registered, so that sums have the same
 //! bits under every shuffle; an ambiguity inside one registration is an error.
 
@@ -45,6 +48,8 @@ pub enum Phase {
     Forces,
     /// Evaluate: accelerations.
     Dynamics,
+    /// Linearise: derivatives of stiff forces.
+    Derivatives,
 }
 
 /// The phases of a step.
@@ -64,6 +69,9 @@ pub const EVALUATE: [Phase; 4] = [
     Phase::Dynamics,
 ];
 
+/// The phases of a linearisation.
+pub const LINEARISE: [Phase; 1] = [Phase::Derivatives];
+
 /// Label of the schedule that runs once per accepted step.
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Step;
@@ -71,6 +79,10 @@ pub struct Step;
 /// Label of the schedule that runs once per stage.
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Evaluate;
+
+/// Label of the schedule that runs once per implicit step.
+#[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Linearise;
 
 /// The place of one registration in the total order.
 #[derive(Clone, Copy, Debug, Hash, PartialEq, Eq, SystemSet)]

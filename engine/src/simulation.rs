@@ -1,14 +1,12 @@
 //! A simulation: the world of one scene, built, and the loop that runs it.
 
-use aerobot_components::run::IntegratorSpec;
 use aerobot_components::sampling::Sampling;
 use aerobot_systems::clock::Clock;
 use aerobot_systems::dynamics::state_vector::StateVector;
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::fault::{Fault, FaultSlot};
-use aerobot_systems::integration::dormand_prince::DormandPrince;
-use aerobot_systems::integration::runge_kutta4::RungeKutta4;
-use aerobot_systems::integration::{Cost, Equations, Integrator, StepFailure, Trajectory};
+use aerobot_systems::instruments::energy_guard::mechanical_energy;
+use aerobot_systems::integration::{Cost, Equations, StepFailure, Trajectory};
 use bevy_ecs::query::QueryState;
 use bevy_ecs::schedule::Schedule;
 use bevy_ecs::world::World;
@@ -16,24 +14,19 @@ use bevy_ecs::world::World;
 use crate::builtin::channels::find_supports;
 use crate::builtin::recorder::Recorder;
 use crate::evaluation::{
-    Evaluation, Integration, IntegrationSlot, WorldEquations, with_integration,
+    Evaluation, Implicit, Integration, IntegrationSlot, WorldEquations, with_integration,
 };
+use crate::integrator_choice::{Choice, choose_integrator};
+use crate::linearisation::Linearisation;
 use crate::placement;
 use crate::plugin::Simulator;
 use crate::recording::frame::ResultSink;
 use crate::recording::summary::{Stop, Summary};
 use crate::scene::{Scene, SceneError, SetupError};
-use crate::schedule::{self, EVALUATE, Evaluate, STEP, Step};
+use crate::schedule::{self, EVALUATE, Evaluate, LINEARISE, Linearise, STEP, Step};
 use crate::stable_step::{self, StableStep};
 use crate::stopping::owner_name;
 use crate::world::{Edges, build_world, lay_out_state};
-
-/// RK4 steps of this part of the largest stable one unless the scene says otherwise.
-const DEFAULT_PART_OF_STABLE_STEP: f64 = 0.5;
-/// Without a tether nothing limits the step of RK4; then it is this, s.
-const DEFAULT_STEP_S: f64 = 1e-3;
-/// First step of an adaptive integration, as a part of the stable one.
-const FIRST_PART_OF_STABLE_STEP: f64 = 0.1;
 
 /// A built simulation.
 pub struct Simulation {
@@ -82,12 +75,24 @@ impl Simulator {
             scene.refuse(SetupError::new(path, format!("{who}{}", fault.message), ""))
         })?;
         let stable_step = stable_step::find(&mut world);
+        let derivatives =
+            schedule::build(Linearise, &LINEARISE, self, scene, &mut world).map_err(unordered)?;
+        let implicit = Implicit {
+            linearisation: Linearisation::new(&mut world, derivatives, &mut evaluation.state)
+                .map_err(|error| scene.refuse(error))?,
+            energy: world.register_system(mechanical_energy),
+        };
         let scales = evaluation.state.error_scales(&mut world);
-        let (integrator, step_s) = choose_integrator(scene, &stable_step, scales)?;
+        let Choice {
+            integrator,
+            step_s,
+            description,
+        } = choose_integrator(scene, &stable_step, scales)?;
         let mut state = vec![0.0; layout.len()];
         evaluation.state.gather(&mut world, &mut state);
         world.insert_resource(IntegrationSlot::new(Integration {
             evaluation,
+            implicit,
             integrator,
             trajectory: Trajectory::new(0.0, state),
             limit_s: 0.0,
@@ -102,7 +107,7 @@ impl Simulator {
                 name: scene.name.clone(),
                 seed: scene.run.seed,
                 formulation: scene.run.formulation.name(),
-                integrator: describe(&scene.run.integrator, step_s),
+                integrator: description,
             },
             stable_step,
             step_s,
@@ -122,59 +127,6 @@ fn start_environment(world: &mut World) {
         .resource_mut::<EnvironmentModel>()
         .wind
         .begin_interval(0.0);
-}
-
-fn choose_integrator(
-    scene: &Scene,
-    stable: &StableStep,
-    scales: Vec<f64>,
-) -> Result<(Box<dyn Integrator>, Option<f64>), SceneError> {
-    match scene.run.integrator {
-        IntegratorSpec::Adaptive {
-            relative_tolerance,
-            longest_step_s,
-        } => {
-            let first_s = (FIRST_PART_OF_STABLE_STEP * stable.step_s).min(DEFAULT_STEP_S);
-            let longest_s = longest_step_s.unwrap_or(f64::INFINITY);
-            let method = DormandPrince::new(relative_tolerance, scales, first_s, longest_s);
-            Ok((Box::new(method), None))
-        }
-        IntegratorSpec::Fixed { step_s } => {
-            let default_s = if stable.step_s.is_finite() {
-                DEFAULT_PART_OF_STABLE_STEP * stable.step_s
-            } else {
-                DEFAULT_STEP_S
-            };
-            let chosen_s = step_s.unwrap_or(default_s);
-            if chosen_s > stable.step_s {
-                return Err(scene.refuse(SetupError::new(
-                    "run.integrator.step_s",
-                    format!(
-                        "a step of {chosen_s} s is not stable: the largest stable one is {:.4e} s, \
-                         set by segment `{}`",
-                        stable.step_s, stable.segment
-                    ),
-                    "choose a shorter step, leave it out, or use `Adaptive()`",
-                )));
-            }
-            Ok((Box::new(RungeKutta4::new(chosen_s)), Some(chosen_s)))
-        }
-    }
-}
-
-fn describe(integrator: &IntegratorSpec, step_s: Option<f64>) -> String {
-    match (integrator, step_s) {
-        (
-            IntegratorSpec::Adaptive {
-                relative_tolerance, ..
-            },
-            _,
-        ) => {
-            format!("Dormand-Prince 5(4), relative tolerance {relative_tolerance:e}")
-        }
-        (IntegratorSpec::Fixed { .. }, Some(step_s)) => format!("RK4, step {step_s:e} s"),
-        (IntegratorSpec::Fixed { .. }, None) => "RK4".to_owned(),
-    }
 }
 
 impl Simulation {
@@ -250,10 +202,15 @@ impl Simulation {
         with_integration(&mut self.world, |world, integration| {
             let Integration {
                 evaluation,
+                implicit,
                 trajectory,
                 ..
             } = integration;
-            let mut equations = WorldEquations { world, evaluation };
+            let mut equations = WorldEquations {
+                world,
+                evaluation,
+                implicit,
+            };
             (0..count).try_for_each(|_| {
                 equations.rates(trajectory.time_s, &trajectory.state, &mut trajectory.rates)
             })

@@ -17,11 +17,11 @@ impl Simulation {
         let remedy = match self.step_s {
             Some(step_s) if self.stable_step.step_s.is_infinite() => format!(
                 "; the step is {step_s:.4e} s and no tether limits it, but drag or spin may: choose a \
-                 shorter step, or `Adaptive()`"
+                 shorter step, or `Auto()`"
             ),
             Some(step_s) => format!(
                 "; the step is {step_s:.4e} s and the largest stable one was {:.4e} s at the start \
-                 (segment `{}`): choose a shorter step, or `Adaptive()`",
+                 (segment `{}`): choose a shorter step, or `Auto()`",
                 self.stable_step.step_s, self.stable_step.segment
             ),
             None => String::new(),
@@ -40,6 +40,12 @@ impl Simulation {
             StepFailure::Runaway { index, value } => (
                 self.name_of_state(*index),
                 format!("the motion grows beyond all bounds ({value:.3e}){remedy}"),
+            ),
+            StepFailure::NotSolvable { index } => (
+                self.name_of_state(*index),
+                "no step is short enough to be solved for: a derivative that a plugin supplies pushes \
+                 without bound"
+                    .to_owned(),
             ),
             StepFailure::StepTooSmall { step_s, index } => (
                 self.name_of_state(*index),

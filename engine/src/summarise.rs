@@ -36,6 +36,7 @@ impl Simulation {
             stable_step_s: has_segments.then_some(self.stable_step.step_s),
             stiffest_segment: has_segments.then(|| self.stable_step.segment.clone()),
             steps: cost.steps,
+            implicit_steps: cost.implicit_steps,
             rejected_steps: cost.rejected,
             evaluations: cost.evaluations,
             simulated_s: stopped.as_ref().map_or(self.time_s(), |stop| stop.time_s),

@@ -8,4 +8,5 @@ pub mod fault;
 pub mod forces;
 pub mod instruments;
 pub mod integration;
+pub mod linearised_motion;
 pub mod nonlinear_solver;

@@ -7,7 +7,9 @@ use aerobot_components::aerodynamics::{
 use aerobot_components::scene_component::FieldReport;
 use aerobot_components::state::Air;
 use aerobot_systems::dynamics::rigid_body::added_mass;
-use aerobot_systems::forces::body_drag::{constant_drag, sphere_drag};
+use aerobot_systems::forces::body_drag::{
+    constant_drag, constant_drag_derivatives, sphere_drag, sphere_drag_derivatives,
+};
 use aerobot_systems::forces::buoyancy::buoyancy;
 use bevy_ecs::world::World;
 
@@ -31,7 +33,11 @@ impl Plugin for AerodynamicsPlugin {
             .add_systems_for::<AddedMass, _, _>(Phase::Environment, || added_mass)
             .add_systems_for::<Buoyancy, _, _>(Phase::Forces, || buoyancy)
             .add_systems_for::<Drag, _, _>(Phase::Forces, || constant_drag)
-            .add_systems_if(Phase::Forces, has_sphere_drag, || sphere_drag);
+            .add_systems_if(Phase::Forces, has_sphere_drag, || sphere_drag)
+            .add_systems_for::<Drag, _, _>(Phase::Derivatives, || constant_drag_derivatives)
+            .add_systems_if(Phase::Derivatives, has_sphere_drag, || {
+                sphere_drag_derivatives
+            });
     }
 }
 

@@ -2,13 +2,14 @@
 
 use aerobot_components::aerodynamics::{RadiusRule, Sphere, SphereRadius};
 use aerobot_components::body::{Anchor, Body, Fixed, Motion, Moving, Pose};
+use aerobot_components::derivatives::{ForceDerivatives, TorqueDerivatives};
 use aerobot_components::scene_component::FieldReport;
 use aerobot_components::state::{
     Acceleration, AddedInertia, AngularAcceleration, AngularVelocity, Attitude, ChartAttitude,
     Force, Inertia, Mass, Origin, Position, Torque, Velocity,
 };
 use aerobot_components::tether::Tether;
-use aerobot_systems::dynamics::accumulators::clear_accumulators;
+use aerobot_systems::dynamics::accumulators::{clear_accumulators, clear_derivatives};
 use aerobot_systems::dynamics::anchors::move_anchors;
 use aerobot_systems::dynamics::rigid_body::{CarriedMass, accelerate_bodies};
 use aerobot_systems::environment::EnvironmentModel;
@@ -38,7 +39,8 @@ impl Plugin for BodiesPlugin {
             .add_setup(set_up)
             .add_systems(Phase::Prepare, || clear_accumulators)
             .add_systems_for::<Moving, _, _>(Phase::Prepare, || move_anchors)
-            .add_systems(Phase::Forces, || weight);
+            .add_systems(Phase::Forces, || weight)
+            .add_systems(Phase::Derivatives, || clear_derivatives);
     }
 }
 
@@ -171,7 +173,11 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
         if fixed.is_some() || moving.is_some() {
             spawned.insert(Anchor);
         } else {
-            spawned.insert(Free);
+            spawned.insert((
+                Free,
+                ForceDerivatives::default(),
+                TorqueDerivatives::default(),
+            ));
         }
     }
     Ok(())

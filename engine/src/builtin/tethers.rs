@@ -2,6 +2,7 @@
 
 use aerobot_components::aerodynamics::SphereRadius;
 use aerobot_components::body::{Body, Fixed, Motion, Moving};
+use aerobot_components::derivatives::SegmentDerivatives;
 use aerobot_components::inertia::InertiaShape;
 use aerobot_components::scene_component::FieldReport;
 use aerobot_components::segment::{
@@ -16,8 +17,8 @@ use aerobot_systems::dynamics::attachments::{load_carriers, place_attachments};
 use aerobot_systems::dynamics::point_mass::accelerate_nodes;
 use aerobot_systems::dynamics::rigid_body::CarriedMass;
 use aerobot_systems::dynamics::segments::{PointArrays, load_points, segment_geometry};
-use aerobot_systems::forces::segment_drag::segment_drag;
-use aerobot_systems::forces::spring::spring;
+use aerobot_systems::forces::segment_drag::{segment_drag, segment_drag_derivatives};
+use aerobot_systems::forces::spring::{spring, spring_derivatives};
 use bevy_ecs::entity::Entity;
 use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::world::World;
@@ -45,7 +46,9 @@ impl Plugin for TethersPlugin {
             .add_systems_if(Phase::Forces, has_drag, || segment_drag)
             .add_systems_for::<Tether, _, _>(Phase::Dynamics, || {
                 (load_points, load_carriers, accelerate_nodes).chain()
-            });
+            })
+            .add_systems_for::<Tether, _, _>(Phase::Derivatives, || spring_derivatives)
+            .add_systems_if(Phase::Derivatives, has_drag, || segment_drag_derivatives);
     }
 }
 
@@ -284,6 +287,7 @@ fn spawn_segment(
         },
         SegmentGeometry::default(),
         SegmentLoad::default(),
+        SegmentDerivatives::default(),
         Tension::default(),
     ));
     if let Some(drag) = tether.drag {

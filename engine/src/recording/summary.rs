@@ -27,6 +27,8 @@ pub struct Summary {
     pub stiffest_segment: Option<String>,
     /// Accepted steps.
     pub steps: u64,
+    /// Those of them that were implicit.
+    pub implicit_steps: u64,
     /// Rejected steps.
     pub rejected_steps: u64,
     /// Evaluations of the rates.

@@ -4,9 +4,11 @@
 //! carries nothing where L <= L0 and never pushes; `slack: false` gives the two-sided law
 //! (paper, sec. 3.1.1; Linskens and Mooij 2016).
 
+use aerobot_components::derivatives::SegmentDerivatives;
 use aerobot_components::segment::{KelvinVoigt, SegmentGeometry, SegmentLoad, Tension};
 use bevy_ecs::change_detection::DetectChangesMut;
 use bevy_ecs::system::Query;
+use glam::DMat3;
 
 /// Finds the tension of every segment and passes it to its ends.
 pub fn spring(
@@ -39,6 +41,36 @@ pub fn axial_force_n(spring: &KelvinVoigt, length_m: f64, length_rate_m_s: f64) 
         0.0
     } else {
         force.max(0.0)
+    }
+}
+
+/// Finds the derivatives of the tension of every segment, and clears those of its drag.
+pub fn spring_derivatives(
+    mut segments: Query<(
+        &KelvinVoigt,
+        &SegmentGeometry,
+        &Tension,
+        &mut SegmentDerivatives,
+    )>,
+) {
+    for (spring, geometry, tension, mut derivatives) in &mut segments {
+        let gap_m = if spring.slack {
+            spring.rest_length_m - geometry.length_m
+        } else {
+            0.0
+        };
+        *derivatives.bypass_change_detection() = SegmentDerivatives {
+            axial_stiffness_n_m: spring.stiffness_n_m,
+            axial_damping_n_s_m: spring.damping_n_s_m,
+            geometric_stiffness_n_m: if geometry.length_m > 0.0 {
+                tension.0.max(0.0) / geometry.length_m
+            } else {
+                0.0
+            },
+            gap_m,
+            closing_m_s: geometry.length_rate_m_s,
+            drag_n_s_m: DMat3::ZERO,
+        };
     }
 }
 

@@ -151,7 +151,7 @@ pub fn nonconservative_power(
 }
 
 /// The stretch that stores energy, m.
-fn elastic_stretch_m(spring: &KelvinVoigt, length_m: f64) -> f64 {
+pub(super) fn elastic_stretch_m(spring: &KelvinVoigt, length_m: f64) -> f64 {
     let stretch = length_m - spring.rest_length_m;
     if spring.slack {
         stretch.max(0.0)

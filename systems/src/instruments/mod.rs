@@ -5,4 +5,5 @@ pub mod attachment_tension;
 pub mod attitude;
 pub mod channel_log;
 pub mod energy;
+pub mod energy_guard;
 pub mod swing;

@@ -1,10 +1,11 @@
-//! Integrators, written against [`Equations`]: a state goes in, rates come out.
-//!
-//! An implicit method will ask its equations for derivative blocks as well; that door is a method
-//! added to [`Equations`] with a default that has none.
+//! Integrators, written against [`Equations`]: a state goes in, rates come out; an implicit method also
+//! asks them to solve for its stages.
 
+pub mod automatic;
 pub mod dormand_prince;
+pub mod rosenbrock;
 pub mod runge_kutta4;
+pub mod runge_kutta43;
 pub mod stability;
 pub mod stable_step;
 pub mod step_control;
@@ -23,6 +24,43 @@ pub trait Equations {
     /// Called once for every accepted state, whose evaluation was the last one: attitudes are taken
     /// as the new centres of their charts, in `state` and in `rates`.
     fn accept(&mut self, state: &mut [f64], rates: &mut [f64]);
+
+    /// Linearises the motion about the accepted state, whose evaluation was the last one.
+    fn linearise(&mut self);
+
+    /// Prepares solutions for a step of `step_s` (s) of a method with this `gamma`.
+    ///
+    /// # Errors
+    /// The place in the state where the step is too long to be solved for.
+    fn factorise(&mut self, step_s: f64, gamma: f64) -> Result<(), usize>;
+
+    /// Solves `(I/g - A) u = r`, g = gamma x step, A the linearised motion: `r` becomes `u`.
+    fn solve(&mut self, r: &mut [f64]);
+
+    /// How large the error `error` of a state is: 1 is an error of `tolerance_m` (m) in a position, or
+    /// what weighs as much in a first-order state. With the place in the state where it is largest.
+    fn position_error(&mut self, error: &[f64], tolerance_m: f64) -> (f64, usize);
+
+    /// The same for the strain of tethers as the motion was linearised last.
+    fn strain_error(&mut self, error: &[f64]) -> (f64, usize);
+
+    /// Whether a tether was slack where the motion was linearised last.
+    fn has_slack(&self) -> bool;
+
+    /// The mechanical energy of the state that was evaluated last.
+    fn energy(&mut self) -> MechanicalEnergy;
+}
+
+/// The mechanical energy of a state, and what changes it from outside.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MechanicalEnergy {
+    /// Kinetic and potential energy, J.
+    pub energy_j: f64,
+    /// Kinetic energy alone, J.
+    pub kinetic_j: f64,
+    /// Power of the forces that are not in the energy, W; without that of the tethers' dampers, which
+    /// can only take.
+    pub power_w: f64,
 }
 
 /// A state on its way through time.
@@ -45,6 +83,8 @@ pub struct Trajectory {
 pub struct Cost {
     /// Accepted steps.
     pub steps: u64,
+    /// Those of them that were implicit.
+    pub implicit_steps: u64,
     /// Rejected steps.
     pub rejected: u64,
     /// Evaluations of the rates.
@@ -115,6 +155,11 @@ pub enum StepFailure {
         index: usize,
         /// Its value, m, rad, m/s or rad/s.
         value: f64,
+    },
+    /// What an implicit step asks for cannot be solved.
+    NotSolvable {
+        /// Its place in the state.
+        index: usize,
     },
     /// The error asks for a step below round-off.
     StepTooSmall {

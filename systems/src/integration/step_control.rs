@@ -83,6 +83,31 @@ impl StepControl {
         self.after_rejection = true;
     }
 
+    /// Shortens the step to `factor` of one that was rejected for another reason than its error.
+    pub fn shorten(&mut self, h: f64, factor: f64) {
+        self.step_s = h * factor;
+        self.after_rejection = true;
+    }
+
+    /// Starts again, after something has switched, with a step of at most `step_s` (s).
+    pub fn restart(&mut self, step_s: f64) {
+        self.step_s = self.step_s.min(step_s);
+        self.previous_error = 1.0;
+    }
+
+    /// Starts with a step of `step_s` (s), whatever was before.
+    pub fn begin(&mut self, step_s: f64) {
+        self.step_s = step_s.min(self.longest_s);
+        self.previous_error = 1.0;
+        self.after_rejection = false;
+    }
+
+    /// The step that will be proposed, s.
+    #[must_use]
+    pub fn step_s(&self) -> f64 {
+        self.step_s
+    }
+
     /// Whether the step has shrunk to round-off of the time `time_s`.
     #[must_use]
     pub fn is_exhausted(&self, time_s: f64) -> bool {

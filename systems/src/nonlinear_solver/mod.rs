@@ -12,4 +12,4 @@ pub mod finite_difference_jacobian;
 mod small_block;
 
 #[cfg(test)]
-mod test_support;
+pub(crate) mod test_support;

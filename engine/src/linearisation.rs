@@ -1,0 +1,334 @@
+//! The world linearised: the Linearise schedule, and the way of its derivatives into flat arrays.
+
+use std::collections::BTreeMap;
+
+use aerobot_components::body::Anchor;
+use aerobot_components::derivatives::{ForceDerivatives, SegmentDerivatives, TorqueDerivatives};
+use aerobot_components::environment::Gravity;
+use aerobot_components::segment::{KelvinVoigt, Segment, SegmentGeometry, Tension};
+use aerobot_components::state::{
+    AddedInertia, Attitude, Force, Inertia, Mass, Position, StateIndex,
+};
+use aerobot_components::tether::{Attachment, TetherNode, TetherParts, TetherPoint, TetherSide};
+use aerobot_systems::dynamics::rigid_body::CarriedMass;
+use aerobot_systems::dynamics::state_vector::{Layout, StateVector};
+use aerobot_systems::environment::EnvironmentModel;
+use aerobot_systems::linearised_motion::body_block::{BodyBlock, Place};
+use aerobot_systems::linearised_motion::derivatives::{Derivatives, LinearSegment};
+use aerobot_systems::linearised_motion::error_norm::{position_error, strain_error};
+use aerobot_systems::linearised_motion::shifted_system::ShiftedSystem;
+use aerobot_systems::linearised_motion::symmetric3::Symmetric3;
+use aerobot_systems::linearised_motion::topology::{BodySite, End, Line, Topology};
+use bevy_ecs::component::Component;
+use bevy_ecs::entity::Entity;
+use bevy_ecs::query::{QueryState, With, Without};
+use bevy_ecs::schedule::Schedule;
+use bevy_ecs::world::World;
+use glam::DMat3;
+
+use crate::scene::SetupError;
+
+/// Place of a free body among those of the linearised motion.
+#[derive(Component, Clone, Copy, Debug)]
+struct LinearIndex(usize);
+
+/// Place of an attachment on a free body: line and side.
+#[derive(Component, Clone, Copy, Debug)]
+struct LineEnd(usize, usize);
+
+type Segments = (
+    &'static Segment,
+    &'static SegmentGeometry,
+    &'static Tension,
+    &'static SegmentDerivatives,
+);
+type Bodies = (
+    &'static LinearIndex,
+    &'static Mass,
+    &'static AddedInertia,
+    Option<&'static Inertia>,
+    &'static CarriedMass,
+    &'static Attitude,
+    &'static ForceDerivatives,
+    &'static TorqueDerivatives,
+);
+
+/// The Linearise schedule with what carries its result to the solver.
+pub(crate) struct Linearisation {
+    schedule: Schedule,
+    system: ShiftedSystem,
+    derivatives: Derivatives,
+    /// Tensions below this say nothing of a strain error, N.
+    least_tension_n: f64,
+    /// Errors of first-order states that matter as much as 1 m.
+    first_order_scales: Vec<f64>,
+    /// Whether a tether was slack at the last linearisation.
+    pub(crate) has_slack: bool,
+    segments: QueryState<Segments>,
+    nodes: QueryState<(&'static TetherPoint, &'static ForceDerivatives), With<TetherNode>>,
+    bodies: QueryState<Bodies, Without<Anchor>>,
+    ends: QueryState<(&'static LineEnd, &'static Attachment, &'static Force)>,
+    attitudes: QueryState<&'static Attitude>,
+}
+
+impl Linearisation {
+    /// For a world whose state has been laid out.
+    pub(crate) fn new(
+        world: &mut World,
+        schedule: Schedule,
+        state: &mut StateVector,
+    ) -> Result<Self, SetupError> {
+        let layout = state.layout();
+        let first_order_scales = state.error_scales(world).split_off(2 * layout.coordinates);
+        let topology = topology(world, layout)?;
+        let mut derivatives = Derivatives::new(&topology);
+        let mut masses = world.query_filtered::<(&TetherPoint, &Mass), With<TetherNode>>();
+        for (point, mass) in masses.iter(world) {
+            derivatives.points[point.index].mass_kg = mass.0;
+        }
+        derivatives.gravity_m_s2 = match world.resource::<EnvironmentModel>().gravity {
+            Gravity::Constant(acceleration) => acceleration,
+            Gravity::InverseSquare { surface_m_s2, .. } => surface_m_s2,
+        };
+        Ok(Self {
+            least_tension_n: least_tension_n(world),
+            schedule,
+            system: ShiftedSystem::new(topology),
+            derivatives,
+            first_order_scales,
+            has_slack: false,
+            segments: world.query(),
+            nodes: world.query_filtered(),
+            bodies: world.query_filtered(),
+            ends: world.query(),
+            attitudes: world.query(),
+        })
+    }
+
+    /// Finds masses and derivatives at the state that was evaluated last.
+    pub(crate) fn linearise(&mut self, world: &mut World) {
+        self.schedule.run(world);
+        let derivatives = &mut self.derivatives;
+        for point in &mut derivatives.points {
+            point.damping = Symmetric3::default();
+        }
+        let mut largest_gap_m = 0.0_f64;
+        for (segment, geometry, tension, own) in self.segments.iter(world) {
+            let index = segment.from_point;
+            derivatives.segments[index] = LinearSegment {
+                direction: geometry.direction,
+                stiffness_n_m: own.axial_stiffness_n_m,
+                damping_n_s_m: own.axial_damping_n_s_m,
+                geometric_n_m: own.geometric_stiffness_n_m,
+                gap_m: own.gap_m,
+                closing_m_s: own.closing_m_s,
+                tension_n: tension.0,
+            };
+            largest_gap_m = largest_gap_m.max(own.gap_m);
+            let drag = Symmetric3::part_of(own.drag_n_s_m);
+            let [first, second] = &mut derivatives.points[index..index + 2] else {
+                continue;
+            };
+            first.damping = first.damping.plus_scaled(drag, 0.5);
+            second.damping = second.damping.plus_scaled(drag, 0.5);
+        }
+        self.has_slack = largest_gap_m > 0.0;
+        for (point, own) in self.nodes.iter(world) {
+            let point = &mut derivatives.points[point.index];
+            let damping = Symmetric3::part_of(own.by_velocity_n_s_m);
+            point.damping = point.damping.plus_scaled(damping, -1.0);
+            point.stiffness =
+                Symmetric3::default().plus_scaled(Symmetric3::part_of(own.by_position_n_m), -1.0);
+        }
+        self.linearise_bodies(world);
+    }
+
+    fn linearise_bodies(&mut self, world: &World) {
+        let derivatives = &mut self.derivatives;
+        for (index, mass, added, inertia, carried, attitude, force, torque) in
+            self.bodies.iter_manual(world)
+        {
+            let body = &mut derivatives.bodies[index.0];
+            let inertia = inertia.map_or(DMat3::ZERO, |inertia| inertia.0);
+            body.mass = BodyBlock::mass(
+                mass.0 + added.0 + carried.mass_kg,
+                carried.first_moment_kg_m,
+                inertia + carried.inertia_kg_m2,
+                attitude.0,
+            );
+            body.damping = BodyBlock::ZERO;
+            body.damping.linear = -force.by_velocity_n_s_m;
+            body.damping.turn = -torque.by_rate_n_m_s;
+            body.stiffness = BodyBlock::ZERO;
+            body.stiffness.linear = -force.by_position_n_m;
+            body.stiffness.turn = -torque.by_rotation_n_m;
+        }
+        for (end, attachment, force) in self.ends.iter_manual(world) {
+            let Ok(attitude) = self.attitudes.get_manual(world, attachment.carrier) else {
+                continue;
+            };
+            let at = &mut derivatives.ends[end.0][end.1];
+            at.place = Place::new(attitude.0, attachment.offset_m);
+            at.offset_m = attachment.offset_m;
+            at.load_n = attitude.0.conjugate() * force.0;
+        }
+        derivatives.load_bodies(self.system.topology());
+    }
+
+    /// Factorises the matrix of a step; the place in the state where that fails.
+    pub(crate) fn factorise(&mut self, step_s: f64, gamma: f64) -> Result<(), usize> {
+        self.system
+            .factorise(&self.derivatives, step_s, gamma)
+            .map_err(|at| at.index)
+    }
+
+    /// Solves for the increments of a stage.
+    pub(crate) fn solve(&mut self, r: &mut [f64]) {
+        self.system.solve(&self.derivatives, r);
+    }
+
+    /// The largest error of positions and of first-order states over the tolerance.
+    pub(crate) fn position_error(&self, error: &[f64], tolerance_m: f64) -> (f64, usize) {
+        let topology = self.system.topology();
+        let mut largest = position_error(topology, error);
+        let first = 2 * topology.coordinates;
+        for (k, (error, scale)) in error[first..]
+            .iter()
+            .zip(&self.first_order_scales)
+            .enumerate()
+        {
+            let in_metres = error.abs() / scale;
+            if in_metres > largest.0 {
+                largest = (in_metres, first + k);
+            }
+        }
+        (largest.0 / tolerance_m, largest.1)
+    }
+
+    /// The largest error of a segment's tension over what is allowed.
+    pub(crate) fn strain_error(&self, error: &[f64]) -> (f64, usize) {
+        let topology = self.system.topology();
+        strain_error(topology, &self.derivatives, error, self.least_tension_n)
+    }
+}
+
+/// What is joined to what; leaves [`LinearIndex`] on free bodies and [`LineEnd`] on their ends.
+fn topology(world: &mut World, layout: Layout) -> Result<Topology, SetupError> {
+    let mut free: Vec<(usize, Entity)> = world
+        .query_filtered::<(&StateIndex, Entity), Without<TetherNode>>()
+        .iter(world)
+        .map(|(index, entity)| (index.0, entity))
+        .collect();
+    free.sort_unstable();
+    let mut indices = BTreeMap::new();
+    let mut bodies = Vec::new();
+    for (index, (first_state, entity)) in free.into_iter().enumerate() {
+        indices.insert(entity, index);
+        bodies.push(BodySite {
+            first_state,
+            turns: world.get::<Inertia>(entity).is_some(),
+            arm_m: gyration_radius_m(world, entity),
+        });
+        world.entity_mut(entity).insert(LinearIndex(index));
+    }
+    let mut tethers: Vec<TetherParts> =
+        world.query::<&TetherParts>().iter(world).cloned().collect();
+    let first_point = |world: &World, parts: &TetherParts| {
+        let point = parts.points.first()?;
+        Some(world.get::<TetherPoint>(*point)?.index)
+    };
+    tethers.sort_by_key(|parts| first_point(world, parts));
+    let mut lines = Vec::new();
+    let mut points = 0;
+    for parts in &tethers {
+        let Some(first_point) = first_point(world, parts) else {
+            continue;
+        };
+        let nodes = parts.points.len() - 2;
+        let index = lines.len();
+        let mut ends = [End::Held; 2];
+        for point in [parts.points.first(), parts.points.last()]
+            .into_iter()
+            .flatten()
+        {
+            let Some(end) = world.get::<Attachment>(*point).copied() else {
+                continue;
+            };
+            let Some(body) = indices.get(&end.carrier).copied() else {
+                continue;
+            };
+            let side = usize::from(end.side == TetherSide::To);
+            ends[side] = End::OnBody(body);
+            world.entity_mut(*point).insert(LineEnd(index, side));
+            bodies[body].arm_m = bodies[body].arm_m.max(end.offset_m.length());
+        }
+        lines.push(Line {
+            first_point,
+            nodes,
+            first_state: first_state(world, parts)?,
+            from: ends[0],
+            to: ends[1],
+        });
+        points = points.max(first_point + nodes + 2);
+    }
+    Ok(Topology {
+        lines,
+        bodies,
+        points,
+        coordinates: layout.coordinates,
+    })
+}
+
+/// Where the nodes of a tether begin in the state, in which they must be consecutive.
+fn first_state(world: &World, parts: &TetherParts) -> Result<usize, SetupError> {
+    let nodes = &parts.points[1..parts.points.len() - 1];
+    let places = nodes
+        .iter()
+        .filter_map(|node| world.get::<StateIndex>(*node));
+    let Some(first) = places.clone().next().map(|place| place.0) else {
+        return Ok(0);
+    };
+    let in_order = places
+        .enumerate()
+        .all(|(k, place)| place.0 == first + 3 * k);
+    if in_order {
+        Ok(first)
+    } else {
+        Err(SetupError::new(
+            "entities",
+            "a plugin has held a node of a tether, or changed the order of nodes",
+            "hold bodies, not nodes, or use `Adaptive()`",
+        ))
+    }
+}
+
+/// By how much an error of attitude moves a body, m: its largest radius of gyration.
+fn gyration_radius_m(world: &World, body: Entity) -> f64 {
+    let Some(mass) = world.get::<Mass>(body) else {
+        return 0.0;
+    };
+    world.get::<Inertia>(body).map_or(0.0, |inertia| {
+        let diagonal = inertia
+            .0
+            .x_axis
+            .x
+            .max(inertia.0.y_axis.y)
+            .max(inertia.0.z_axis.z);
+        (diagonal / mass.0).sqrt()
+    })
+}
+
+/// The weight of the heaviest body, N; without weight, the tension of a strain of 1e-6.
+fn least_tension_n(world: &mut World) -> f64 {
+    let gravity = world.resource::<EnvironmentModel>().gravity;
+    let heaviest = world
+        .query_filtered::<(&Mass, &Position), With<StateIndex>>()
+        .iter(world)
+        .map(|(mass, position)| mass.0 * gravity.acceleration_m_s2(position.0.z))
+        .fold(0.0, f64::max);
+    world
+        .query::<&KelvinVoigt>()
+        .iter(world)
+        .map(|spring| 1e-6 * spring.stiffness_n_m * spring.rest_length_m)
+        .fold(heaviest, f64::max)
+}

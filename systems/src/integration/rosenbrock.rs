@@ -1,0 +1,420 @@
+//! ROS34PW2, a linearly implicit method for stiff motion: four stages, order 3, embedded order 2,
+//! L-stable and stiffly accurate; the order holds with an inexact Jacobian (a W-method), so that
+//! whatever is not stiff need not supply derivatives (Rang and Angermann 2005, BIT 45, 761-787).
+//!
+//! For y' = f(t, y), with a matrix A near df/dy and g = gamma h (Hairer and Wanner 1996, IV.7):
+//!
+//! ```text
+//! (I/g - A) u_i = f(t + alpha_i h, y + sum_j a_ij u_j) + sum_j c_ij u_j / h
+//! y_1 = y + sum m_i u_i      error = sum (m_i - m^_i) u_i
+//! a = alpha Gamma^-1         c = I/gamma - Gamma^-1         m = b Gamma^-1
+//! ```
+//!
+//! The equations of motion solve this for velocities alone ([`crate::linearised_motion`]).
+//!
+//! A step is accepted when its error is (in metres and in the strain of tethers), and, where a tether is
+//! slack, when the mechanical energy has not risen by more than the work done and a thousandth of the
+//! kinetic energy: no method is stable in energy from slack to taut by itself.
+
+use super::step_control::StepControl;
+use super::{
+    Equations, Integrator, MechanicalEnergy, StepFailure, Trajectory, check_state, first_not_finite,
+};
+
+const STAGES: usize = 4;
+/// gamma.
+pub const GAMMA: f64 = 4.358_665_215_084_59e-1;
+const ALPHA: [[f64; STAGES]; STAGES] = [
+    [0.0; STAGES],
+    [8.717_330_430_169_18e-1, 0.0, 0.0, 0.0],
+    [
+        8.445_706_001_536_942e-1,
+        -1.129_906_423_648_418_5e-1,
+        0.0,
+        0.0,
+    ],
+    [0.0, 0.0, 1.0, 0.0],
+];
+const COUPLING: [[f64; STAGES]; STAGES] = [
+    [GAMMA, 0.0, 0.0, 0.0],
+    [-8.717_330_430_169_18e-1, GAMMA, 0.0, 0.0],
+    [
+        -9.033_805_701_304_408e-1,
+        5.418_067_238_809_533e-2,
+        GAMMA,
+        0.0,
+    ],
+    [
+        2.421_238_070_609_534_6e-1,
+        -1.223_250_583_904_514_7,
+        5.452_602_553_351_021e-1,
+        GAMMA,
+    ],
+];
+const B: [f64; STAGES] = [
+    2.421_238_070_609_534_6e-1,
+    -1.223_250_583_904_514_7,
+    1.545_260_255_335_102,
+    GAMMA,
+];
+const B_EMBEDDED: [f64; STAGES] = [
+    3.781_090_314_581_937e-1,
+    -9.604_229_221_242_318e-2,
+    0.5,
+    2.179_332_607_542_295e-1,
+];
+
+/// Order of the embedded solution, plus one.
+const ERROR_ORDER: u32 = 3;
+/// The tolerance of a step is this part of the error that is wanted in the end: errors add up.
+const PART_OF_ACCURACY: f64 = 0.25;
+/// The first step after something has switched is at most this, s.
+const FIRST_STEP_S: f64 = 0.01;
+/// Part of the kinetic energy that may come from nowhere in one step.
+const ENERGY_GAIN: f64 = 1e-3;
+/// After a step that gained energy, the next is this part of it.
+const AFTER_GAIN: f64 = 0.5;
+
+/// The tableau in the form that needs no product with A.
+#[derive(Clone, Copy, Debug)]
+struct Tableau {
+    a: [[f64; STAGES]; STAGES],
+    c: [[f64; STAGES]; STAGES],
+    m: [f64; STAGES],
+    e: [f64; STAGES],
+    alpha: [f64; STAGES],
+}
+
+impl Tableau {
+    fn new() -> Self {
+        let inverse = invert_lower(&COUPLING);
+        let product = |row: &[f64; STAGES]| -> [f64; STAGES] {
+            std::array::from_fn(|j| (0..STAGES).map(|k| row[k] * inverse[k][j]).sum())
+        };
+        let m = product(&B);
+        let m_embedded = product(&B_EMBEDDED);
+        Self {
+            a: ALPHA.map(|row| product(&row)),
+            c: std::array::from_fn(|i| {
+                std::array::from_fn(|j| if i == j { 0.0 } else { -inverse[i][j] })
+            }),
+            m,
+            e: std::array::from_fn(|i| m[i] - m_embedded[i]),
+            alpha: ALPHA.map(|row| row.iter().sum()),
+        }
+    }
+}
+
+fn invert_lower(matrix: &[[f64; STAGES]; STAGES]) -> [[f64; STAGES]; STAGES] {
+    let mut inverse = [[0.0; STAGES]; STAGES];
+    for column in 0..STAGES {
+        for row in column..STAGES {
+            let one = if row == column { 1.0 } else { 0.0 };
+            let sum: f64 = (column..row)
+                .map(|k| matrix[row][k] * inverse[k][column])
+                .sum();
+            inverse[row][column] = (one - sum) / matrix[row][row];
+        }
+    }
+    inverse
+}
+
+/// How the step is chosen.
+#[derive(Debug)]
+enum Steps {
+    /// By the error: the tolerance, m, and the control.
+    Controlled(f64, StepControl),
+    /// Whole steps of at most this, s.
+    Fixed(f64),
+}
+
+/// The method with its scratch.
+#[derive(Debug)]
+pub struct Rosenbrock {
+    tableau: Tableau,
+    steps: Steps,
+    u: [Vec<f64>; STAGES],
+    stage: Vec<f64>,
+    error: Vec<f64>,
+    trial: Vec<f64>,
+    rates: Vec<f64>,
+}
+
+impl Rosenbrock {
+    /// With steps chosen for positions that are right to `accuracy_m` (m) in the end, and not longer
+    /// than `longest_step_s` (s); for states of `length` numbers.
+    #[must_use]
+    pub fn controlled(accuracy_m: f64, length: usize, longest_step_s: f64) -> Self {
+        let control = StepControl::new(ERROR_ORDER, FIRST_STEP_S, longest_step_s);
+        Self::new(
+            Steps::Controlled(PART_OF_ACCURACY * accuracy_m, control),
+            length,
+        )
+    }
+
+    /// With steps of `step_s` (s), whatever their error.
+    #[must_use]
+    pub fn fixed(step_s: f64, length: usize) -> Self {
+        Self::new(Steps::Fixed(step_s), length)
+    }
+
+    fn new(steps: Steps, length: usize) -> Self {
+        Self {
+            tableau: Tableau::new(),
+            steps,
+            u: std::array::from_fn(|_| vec![0.0; length]),
+            stage: vec![0.0; length],
+            error: vec![0.0; length],
+            trial: vec![0.0; length],
+            rates: vec![0.0; length],
+        }
+    }
+
+    /// Starts again with a step of `step_s` (s).
+    pub fn restart(&mut self, step_s: f64) {
+        if let Steps::Controlled(_, control) = &mut self.steps {
+            control.begin(step_s);
+        }
+    }
+
+    /// One step from the trajectory to `end_s`: the stages, the new state in `trial`, its estimated
+    /// error in `error`.
+    fn attempt(
+        &mut self,
+        equations: &mut dyn Equations,
+        trajectory: &mut Trajectory,
+        end_s: f64,
+    ) -> Result<(), StepFailure> {
+        let h = end_s - trajectory.time_s;
+        equations
+            .factorise(h, GAMMA)
+            .map_err(|index| StepFailure::NotSolvable { index })?;
+        let Tableau { a, c, alpha, .. } = &self.tableau;
+        for i in 0..STAGES {
+            let (done, rest) = self.u.split_at_mut(i);
+            let u = &mut rest[0];
+            if i == 0 {
+                u.copy_from_slice(&trajectory.rates);
+            } else {
+                add_all(&mut self.stage, &trajectory.state, &a[i], done);
+                let time_s = if alpha[i] == 1.0 {
+                    end_s
+                } else {
+                    trajectory.time_s + alpha[i] * h
+                };
+                trajectory.cost.evaluations += 1;
+                equations
+                    .rates(time_s, &self.stage, &mut self.rates)
+                    .map_err(StepFailure::Fault)?;
+                let over_step = c[i].map(|c| c / h);
+                add_all(u, &self.rates, &over_step, done);
+            }
+            equations.solve(u);
+        }
+        self.finish(&trajectory.state);
+        check_state(&self.trial)
+    }
+
+    /// The new state and its error from the stages.
+    fn finish(&mut self, start: &[f64]) {
+        let Tableau { m, e, .. } = &self.tableau;
+        let [u1, u2, u3, u4] = &self.u;
+        let stages = u1.iter().zip(u2).zip(u3.iter().zip(u4));
+        let out = self.trial.iter_mut().zip(&mut self.error).zip(start);
+        for (((trial, error), start), ((u1, u2), (u3, u4))) in out.zip(stages) {
+            *trial = start + (m[0] * u1 + m[1] * u2 + m[2] * u3 + m[3] * u4);
+            *error = e[0] * u1 + e[1] * u2 + e[2] * u3 + e[3] * u4;
+        }
+    }
+
+    /// Evaluates the new state, which the next step and the record want.
+    fn evaluate_trial(
+        &mut self,
+        equations: &mut dyn Equations,
+        trajectory: &mut Trajectory,
+        end_s: f64,
+    ) -> Result<(), StepFailure> {
+        trajectory.cost.evaluations += 1;
+        equations
+            .rates(end_s, &self.trial, &mut self.rates)
+            .map_err(StepFailure::Fault)?;
+        match first_not_finite(&self.rates) {
+            Some(index) => Err(StepFailure::NotFinite { index }),
+            None => Ok(()),
+        }
+    }
+
+    /// Says whether the step that was tried may be taken, with its state evaluated if so; `start` is the
+    /// energy before it, where that must not grow.
+    fn judge(
+        &mut self,
+        equations: &mut dyn Equations,
+        trajectory: &mut Trajectory,
+        tolerance_m: f64,
+        start: Option<MechanicalEnergy>,
+        end_s: f64,
+    ) -> Result<Verdict, StepFailure> {
+        let mut largest = equations.position_error(&self.error, tolerance_m);
+        let strain = equations.strain_error(&self.error);
+        if strain.0 > largest.0 {
+            largest = strain;
+        }
+        let (error, index) = largest;
+        // Not below: what is not a number is not accurate.
+        if !(error <= 1.0) {
+            return Ok(Verdict::Inaccurate(error, index));
+        }
+        self.evaluate_trial(equations, trajectory, end_s)?;
+        let h = end_s - trajectory.time_s;
+        if start.is_some_and(|start| start.gains(&equations.energy(), h)) {
+            return Ok(Verdict::GainsEnergy(index));
+        }
+        Ok(Verdict::Good(error))
+    }
+
+    fn take(&mut self, equations: &mut dyn Equations, trajectory: &mut Trajectory, end_s: f64) {
+        std::mem::swap(&mut trajectory.state, &mut self.trial);
+        std::mem::swap(&mut trajectory.rates, &mut self.rates);
+        trajectory.time_s = end_s;
+        trajectory.cost.steps += 1;
+        trajectory.cost.implicit_steps += 1;
+        equations.accept(&mut trajectory.state, &mut trajectory.rates);
+    }
+
+    fn step_fixed(
+        &mut self,
+        equations: &mut dyn Equations,
+        trajectory: &mut Trajectory,
+        step_s: f64,
+        limit_s: f64,
+    ) -> Result<(), StepFailure> {
+        let remaining = limit_s - trajectory.time_s;
+        let count = (remaining / step_s - 1e-9).ceil().max(1.0);
+        let end_s = if count == 1.0 {
+            limit_s
+        } else {
+            trajectory.time_s + remaining / count
+        };
+        self.attempt(equations, trajectory, end_s)?;
+        self.evaluate_trial(equations, trajectory, end_s)?;
+        self.take(equations, trajectory, end_s);
+        Ok(())
+    }
+
+    fn step_controlled(
+        &mut self,
+        equations: &mut dyn Equations,
+        trajectory: &mut Trajectory,
+        tolerance_m: f64,
+        control: &mut StepControl,
+        limit_s: f64,
+    ) -> Result<(), StepFailure> {
+        let start = equations.has_slack().then(|| equations.energy());
+        loop {
+            let (h, reaches_limit) = control.propose(trajectory.time_s, limit_s);
+            let end_s = if reaches_limit {
+                limit_s
+            } else {
+                trajectory.time_s + h
+            };
+            let outcome = self
+                .attempt(equations, trajectory, end_s)
+                .and_then(|()| self.judge(equations, trajectory, tolerance_m, start, end_s));
+            let failure = match outcome {
+                Ok(Verdict::Good(error)) => {
+                    control.accepts(h, error, reaches_limit);
+                    self.take(equations, trajectory, end_s);
+                    return Ok(());
+                }
+                Ok(Verdict::Inaccurate(error, index)) => {
+                    control.accepts(h, error, reaches_limit);
+                    StepFailure::StepTooSmall { step_s: h, index }
+                }
+                Ok(Verdict::GainsEnergy(index)) => {
+                    control.shorten(h, AFTER_GAIN);
+                    StepFailure::StepTooSmall { step_s: h, index }
+                }
+                // A trial step that goes astray is too long, unless it is already as short as can be.
+                Err(failure) => {
+                    control.failed(h);
+                    failure
+                }
+            };
+            trajectory.cost.rejected += 1;
+            if control.is_exhausted(trajectory.time_s) {
+                return Err(failure);
+            }
+        }
+    }
+}
+
+/// What becomes of a step that was tried.
+enum Verdict {
+    /// It is taken; its scaled error.
+    Good(f64),
+    /// Its scaled error is too large; where.
+    Inaccurate(f64, usize),
+    /// It has made energy.
+    GainsEnergy(usize),
+}
+
+impl MechanicalEnergy {
+    /// Whether `end`, a step of `h` (s) later, has more energy than what was done in work allows.
+    fn gains(&self, end: &Self, h: f64) -> bool {
+        let work = 0.5 * h * (self.power_w + end.power_w);
+        let round_off = 1e-12 * self.energy_j.abs().max(end.energy_j.abs());
+        let kinetic = self.kinetic_j.max(end.kinetic_j);
+        end.energy_j - self.energy_j > work + ENERGY_GAIN * kinetic + round_off
+    }
+}
+
+impl Integrator for Rosenbrock {
+    fn step(
+        &mut self,
+        equations: &mut dyn Equations,
+        trajectory: &mut Trajectory,
+        limit_s: f64,
+    ) -> Result<(), StepFailure> {
+        let switched = !trajectory.rates_are_current;
+        trajectory.refresh(equations)?;
+        equations.linearise();
+        match std::mem::replace(&mut self.steps, Steps::Fixed(f64::INFINITY)) {
+            Steps::Fixed(step_s) => {
+                self.steps = Steps::Fixed(step_s);
+                self.step_fixed(equations, trajectory, step_s, limit_s)
+            }
+            Steps::Controlled(tolerance_m, mut control) => {
+                if switched {
+                    control.restart(FIRST_STEP_S);
+                }
+                let outcome =
+                    self.step_controlled(equations, trajectory, tolerance_m, &mut control, limit_s);
+                self.steps = Steps::Controlled(tolerance_m, control);
+                outcome
+            }
+        }
+    }
+}
+
+/// `start + sum_j factors_j u_j`, element by element, into `out`.
+fn add_all(out: &mut [f64], start: &[f64], factors: &[f64; STAGES], u: &[Vec<f64>]) {
+    let out = out.iter_mut().zip(start);
+    match u {
+        [u1] => {
+            for ((out, start), u1) in out.zip(u1) {
+                *out = start + factors[0] * u1;
+            }
+        }
+        [u1, u2] => {
+            for ((out, start), (u1, u2)) in out.zip(u1.iter().zip(u2)) {
+                *out = start + (factors[0] * u1 + factors[1] * u2);
+            }
+        }
+        [u1, u2, u3] => {
+            for ((out, start), ((u1, u2), u3)) in out.zip(u1.iter().zip(u2).zip(u3)) {
+                *out = start + (factors[0] * u1 + factors[1] * u2 + factors[2] * u3);
+            }
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,87 @@
+//! How large an error of a step is, for a world of tethers: in metres, and in the strain of segments.
+//!
+//! Positions count over the tolerance, rotations times their arm. The strain error
+//! `k |t.(e_(s+1) - e_s)|` counts over a tenth of a reference tension: at a loose tolerance in metres
+//! an error within it can still be a tension that no tether bears, and throws the chain into a slack
+//! rattle. Velocities do not count: they would make the step follow axial waves that the method damps.
+
+use glam::DVec3;
+
+use super::body_block::Twist;
+use super::derivatives::{Derivatives, LinearEnd, LinearSegment};
+use super::topology::{End, Topology};
+
+/// Part of the reference tension that a strain error may be.
+const PART_OF_TENSION: f64 = 0.1;
+
+/// The largest error of a position in `e`, m, and its place in the state.
+#[must_use]
+pub fn position_error(topology: &Topology, e: &[f64]) -> (f64, usize) {
+    let mut largest = (0.0, 0);
+    let mut consider = |square: f64, index: usize| {
+        if square > largest.0 || square.is_nan() {
+            largest = (square, index);
+        }
+    };
+    for body in &topology.bodies {
+        let at = body.first_state;
+        consider(DVec3::from_slice(&e[at..]).length_squared(), at);
+        let turn = DVec3::from_slice(&e[at + 3..]).length_squared();
+        consider(body.arm_m * body.arm_m * turn, at + 3);
+    }
+    for line in &topology.lines {
+        let nodes = &e[line.first_state..line.first_state + 3 * line.nodes];
+        for (i, node) in nodes.chunks_exact(3).enumerate() {
+            let square = DVec3::from_slice(node).length_squared();
+            consider(square, line.first_state + 3 * i);
+        }
+    }
+    (largest.0.sqrt(), largest.1)
+}
+
+/// The largest error of a segment's tension for the error `e`, over what is allowed, and a place in the
+/// state by it. `least_tension_n` is the smallest reference tension.
+#[must_use]
+pub fn strain_error(
+    topology: &Topology,
+    derivatives: &Derivatives,
+    e: &[f64],
+    least_tension_n: f64,
+) -> (f64, usize) {
+    let mut largest = (0.0, 0);
+    let mut tension_n = least_tension_n;
+    for (line, ends) in topology.lines.iter().zip(&derivatives.ends) {
+        let segments = &derivatives.segments[line.segments()];
+        let mut before = end_error(topology, line.from, &ends[0], e);
+        let mut consider = |segment: &LinearSegment, step: DVec3, node: usize| {
+            let error = segment.stiffness_n_m * segment.direction.dot(step).abs();
+            if error > largest.0 {
+                largest = (error, line.first_state + 3 * node);
+            }
+            tension_n = tension_n.max(segment.tension_n);
+        };
+        let nodes = &e[line.first_state..line.first_state + 3 * line.nodes];
+        for (i, (node, segment)) in nodes.chunks_exact(3).zip(segments).enumerate() {
+            let here = DVec3::from_slice(node);
+            consider(segment, here - before, i);
+            before = here;
+        }
+        let last = end_error(topology, line.to, &ends[1], e) - before;
+        consider(&segments[line.nodes], last, line.nodes.saturating_sub(1));
+    }
+    (largest.0 / (PART_OF_TENSION * tension_n), largest.1)
+}
+
+/// The error of an end of a tether, m.
+fn end_error(topology: &Topology, end: End, at: &LinearEnd, e: &[f64]) -> DVec3 {
+    match end {
+        End::Held => DVec3::ZERO,
+        End::OnBody(body) => {
+            let first = topology.bodies[body].first_state;
+            at.place.motion(Twist {
+                linear: DVec3::from_slice(&e[first..]),
+                angular: DVec3::from_slice(&e[first + 3..]),
+            })
+        }
+    }
+}

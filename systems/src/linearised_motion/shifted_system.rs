@@ -1,0 +1,355 @@
+//! The matrix `M - g D - g^2 K` of one step: factors and solutions.
+
+use glam::{DMat3, DVec3};
+
+use super::body_block::{BodyBlock, Twist};
+use super::chain::{Chain, SegmentBlock};
+use super::derivatives::Derivatives;
+use super::symmetric3::Symmetric3;
+use super::topology::{End, Topology};
+use crate::nonlinear_solver::block_elimination::Elimination;
+use crate::nonlinear_solver::block_sparse::{BlockMatrix, BlockPattern};
+
+/// A matrix that cannot be factorised: the step is too long for what pushes there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NotSolvable {
+    /// Place in the state.
+    pub index: usize,
+}
+
+/// Factors of the matrix of one step, and scratch for its solutions.
+#[derive(Clone, Debug)]
+pub struct ShiftedSystem {
+    topology: Topology,
+    /// g, s.
+    g: f64,
+    /// Blocks of the segments: of the matrix, and of g^2 K alone.
+    blocks: Vec<SegmentBlock>,
+    elastic: Vec<SegmentBlock>,
+    /// Diagonal blocks of the nodes without those of the segments.
+    own: Vec<Symmetric3>,
+    chains: Vec<Chain>,
+    matrix: BlockMatrix,
+    elimination: Elimination,
+    /// Of the nodes, by point.
+    loads: Vec<DVec3>,
+    /// Of the bodies.
+    motions: Vec<Twist>,
+    rhs: Vec<f64>,
+}
+
+impl ShiftedSystem {
+    /// For a topology; nothing is factorised yet.
+    #[must_use]
+    pub fn new(topology: Topology) -> Self {
+        let dims: Vec<usize> = topology.bodies.iter().map(|body| body.unknowns()).collect();
+        let edges: Vec<(usize, usize)> = topology
+            .lines
+            .iter()
+            .filter_map(|line| match (line.from, line.to) {
+                (End::OnBody(from), End::OnBody(to)) => Some((from, to)),
+                _ => None,
+            })
+            .collect();
+        let pattern = BlockPattern::new(&dims, &edges);
+        let chains = topology
+            .lines
+            .iter()
+            .map(|line| Chain::new(line.nodes, line.from != End::Held))
+            .collect();
+        Self {
+            g: 0.0,
+            blocks: vec![SegmentBlock::default(); topology.points],
+            elastic: vec![SegmentBlock::default(); topology.points],
+            own: vec![Symmetric3::default(); topology.points],
+            chains,
+            elimination: Elimination::analyse(&pattern),
+            rhs: vec![0.0; pattern.dimension()],
+            matrix: BlockMatrix::new(pattern),
+            loads: vec![DVec3::ZERO; topology.points],
+            motions: vec![Twist::default(); topology.bodies.len()],
+            topology,
+        }
+    }
+
+    /// What is joined to what.
+    #[must_use]
+    pub fn topology(&self) -> &Topology {
+        &self.topology
+    }
+
+    /// Factorises the matrix of a step of `step_s` with g = `gamma` x `step_s`.
+    ///
+    /// # Errors
+    /// [`NotSolvable`], with the place in the state.
+    pub fn factorise(
+        &mut self,
+        derivatives: &Derivatives,
+        step_s: f64,
+        gamma: f64,
+    ) -> Result<(), NotSolvable> {
+        let g = gamma * step_s;
+        self.g = g;
+        self.set_blocks(derivatives, step_s);
+        self.set_bodies(derivatives);
+        for (index, line) in self.topology.lines.iter().enumerate() {
+            let left = self.chains[index]
+                .factorise(&self.own[line.node_points()], &self.blocks[line.segments()])
+                .map_err(|at| NotSolvable {
+                    index: line.first_state + 3 * at.node,
+                })?;
+            let [from, to] = &derivatives.ends[index];
+            if let End::OnBody(body) = line.from {
+                let block = BodyBlock::between(&from.place, left.from_from, &from.place);
+                add_block(&mut self.matrix, body, body, &block);
+            }
+            if let End::OnBody(body) = line.to {
+                let block = BodyBlock::between(&to.place, left.to_to, &to.place);
+                add_block(&mut self.matrix, body, body, &block);
+            }
+            if let (End::OnBody(a), End::OnBody(b)) = (line.from, line.to) {
+                let block = BodyBlock::between(&to.place, left.to_from, &from.place);
+                add_block(&mut self.matrix, b, a, &block);
+                let block = BodyBlock::between(&from.place, left.to_from.transpose(), &to.place);
+                add_block(&mut self.matrix, a, b, &block);
+            }
+        }
+        self.elimination
+            .factorise(&self.matrix)
+            .map_err(|singular| NotSolvable {
+                index: self.topology.bodies[singular.site].first_state,
+            })
+    }
+
+    fn set_blocks(&mut self, derivatives: &Derivatives, step_s: f64) {
+        let (g, g2) = (self.g, self.g * self.g);
+        let gravity = derivatives.gravity_m_s2;
+        let segments = derivatives.segments.iter();
+        for ((segment, block), elastic) in segments.zip(&mut self.blocks).zip(&mut self.elastic) {
+            let (k, c) = if segment.will_be_taut(step_s, gravity) {
+                (segment.stiffness_n_m, segment.damping_n_s_m)
+            } else {
+                (0.0, 0.0)
+            };
+            let all = g2 * segment.geometric_n_m;
+            let along = g2 * k - all;
+            *elastic = SegmentBlock {
+                direction: segment.direction,
+                along,
+                all,
+            };
+            *block = SegmentBlock {
+                direction: segment.direction,
+                along: along + g * c,
+                all,
+            };
+        }
+        for (own, point) in self.own.iter_mut().zip(&derivatives.points) {
+            *own = Symmetric3::identity(point.mass_kg)
+                .plus_scaled(point.damping, g)
+                .plus_scaled(point.stiffness, g2);
+        }
+    }
+
+    fn set_bodies(&mut self, derivatives: &Derivatives) {
+        self.matrix.clear();
+        for (index, body) in derivatives.bodies.iter().enumerate() {
+            let mut block = body.mass;
+            block.add(&body.damping, self.g);
+            block.add(&body.stiffness, self.g * self.g);
+            add_block(&mut self.matrix, index, index, &block);
+        }
+    }
+
+    /// Solves for the increments of one stage: `r` holds r_x, r_v and r_s and becomes X, V and S.
+    pub fn solve(&mut self, derivatives: &Derivatives, r: &mut [f64]) {
+        let (r_x, rest) = r.split_at_mut(self.topology.coordinates);
+        let (r_v, r_s) = rest.split_at_mut(self.topology.coordinates);
+        self.load_bodies(derivatives, r_x, r_v);
+        for index in 0..self.topology.lines.len() {
+            self.load_line(index, derivatives, r_x, r_v);
+        }
+        self.solve_bodies();
+        for index in 0..self.topology.lines.len() {
+            self.take_line(index, derivatives, r_x, r_v);
+        }
+        self.take_bodies(r_x, r_v);
+        for r in r_s {
+            *r *= self.g;
+        }
+    }
+
+    /// `g M r_v + g^2 K r_x` of the bodies alone; leaves their r_x in `motions`.
+    fn load_bodies(&mut self, derivatives: &Derivatives, r_x: &[f64], r_v: &[f64]) {
+        let g = self.g;
+        let sites = self.topology.bodies.iter();
+        for ((index, site), body) in sites.enumerate().zip(&derivatives.bodies) {
+            let at = site.first_state;
+            let shift = twist_at(r_x, at);
+            let push = body.mass.times(twist_at(r_v, at));
+            let pull = body.stiffness.times(shift);
+            self.motions[index] = shift;
+            let load = Twist {
+                linear: g * push.linear - g * g * pull.linear,
+                angular: g * push.angular - g * g * pull.angular,
+            };
+            let offset = self.matrix.pattern().offset(index);
+            self.rhs[offset..offset + site.unknowns()].fill(0.0);
+            add_load(&mut self.rhs[offset..], site.turns, load);
+        }
+    }
+
+    /// The same of a line, and the elimination of its nodes.
+    fn load_line(&mut self, index: usize, derivatives: &Derivatives, r_x: &[f64], r_v: &[f64]) {
+        let line = self.topology.lines[index];
+        let g = self.g;
+        let [from, to] = &derivatives.ends[index];
+        let end_shift = |end: End, place: &super::body_block::Place| match end {
+            End::Held => DVec3::ZERO,
+            End::OnBody(body) => place.motion(self.motions[body]),
+        };
+        let (first, last) = (
+            end_shift(line.from, &from.place),
+            end_shift(line.to, &to.place),
+        );
+        let nodes = line.nodes;
+        let states = line.first_state..line.first_state + 3 * nodes;
+        let (x, v) = (&r_x[states.clone()], &r_v[states]);
+        let elastic = &self.elastic[line.segments()];
+        let points = &derivatives.points[line.node_points()];
+        let loads = &mut self.loads[line.node_points()];
+        let mut here = if nodes > 0 {
+            DVec3::from_slice(x)
+        } else {
+            last
+        };
+        let mut pull = elastic[0].times(here - first);
+        let on_from = pull;
+        for i in 0..nodes {
+            let next = if i + 1 < nodes {
+                DVec3::from_slice(&x[3 * i + 3..])
+            } else {
+                last
+            };
+            let onward = elastic[i + 1].times(next - here);
+            let point = &points[i];
+            loads[i] = (g * point.mass_kg) * DVec3::from_slice(&v[3 * i..]) + (onward - pull);
+            if point.stiffness != Symmetric3::default() {
+                loads[i] -= g * g * point.stiffness.times(here);
+            }
+            pull = onward;
+            here = next;
+        }
+        let (from_load, to_load) = self.chains[index].forward(loads);
+        for (end, place, load) in [
+            (line.from, &from.place, from_load + on_from),
+            (line.to, &to.place, to_load - pull),
+        ] {
+            if let End::OnBody(body) = end {
+                let offset = self.matrix.pattern().offset(body);
+                let turns = self.topology.bodies[body].turns;
+                add_load(&mut self.rhs[offset..], turns, place.load(load));
+            }
+        }
+    }
+
+    fn solve_bodies(&mut self) {
+        self.elimination.solve(&mut self.rhs);
+        for (index, site) in self.topology.bodies.iter().enumerate() {
+            let v = &self.rhs[self.matrix.pattern().offset(index)..];
+            self.motions[index] = Twist {
+                linear: DVec3::from_slice(v),
+                angular: if site.turns {
+                    DVec3::from_slice(&v[3..])
+                } else {
+                    DVec3::ZERO
+                },
+            };
+        }
+    }
+
+    /// Nodes of a line from the motion of its ends; `r_x` and `r_v` become X and V there.
+    fn take_line(
+        &mut self,
+        index: usize,
+        derivatives: &Derivatives,
+        r_x: &mut [f64],
+        r_v: &mut [f64],
+    ) {
+        let line = self.topology.lines[index];
+        let [from, to] = &derivatives.ends[index];
+        let end_motion = |end: End, place: &super::body_block::Place| match end {
+            End::Held => DVec3::ZERO,
+            End::OnBody(body) => place.motion(self.motions[body]),
+        };
+        let (first, last) = (
+            end_motion(line.from, &from.place),
+            end_motion(line.to, &to.place),
+        );
+        let loads = &mut self.loads[line.node_points()];
+        self.chains[index].backward(loads, first, last);
+        let states = line.first_state..line.first_state + 3 * line.nodes;
+        let x = r_x[states.clone()].chunks_exact_mut(3);
+        let v = r_v[states].chunks_exact_mut(3);
+        for ((x, v), load) in x.zip(v).zip(loads) {
+            for ((x, v), load) in x.iter_mut().zip(v).zip(load.to_array()) {
+                *v = load;
+                *x = self.g * (load + *x);
+            }
+        }
+    }
+
+    fn take_bodies(&mut self, r_x: &mut [f64], r_v: &mut [f64]) {
+        for (site, motion) in self.topology.bodies.iter().zip(&self.motions) {
+            let at = site.first_state;
+            motion.linear.write_to_slice(&mut r_v[at..]);
+            if site.turns {
+                motion.angular.write_to_slice(&mut r_v[at + 3..]);
+            } else {
+                for r in &mut r_v[at + 3..at + 6] {
+                    *r *= self.g;
+                }
+            }
+            for k in at..at + 6 {
+                r_x[k] = self.g * (r_v[k] + r_x[k]);
+            }
+        }
+    }
+}
+
+fn twist_at(values: &[f64], at: usize) -> Twist {
+    Twist {
+        linear: DVec3::from_slice(&values[at..]),
+        angular: DVec3::from_slice(&values[at + 3..]),
+    }
+}
+
+fn add_load(rhs: &mut [f64], turns: bool, load: Twist) {
+    for (r, f) in rhs.iter_mut().zip(load.linear.to_array()) {
+        *r += f;
+    }
+    if turns {
+        for (r, f) in rhs[3..].iter_mut().zip(load.angular.to_array()) {
+            *r += f;
+        }
+    }
+}
+
+/// Adds a block between two bodies, of which points take the linear part only.
+fn add_block(matrix: &mut BlockMatrix, i: usize, j: usize, block: &BodyBlock) {
+    let (rows, columns) = (matrix.pattern().dim(i), matrix.pattern().dim(j));
+    let values = matrix.block_mut(i, j);
+    let mut add = |row: usize, column: usize, part: DMat3| {
+        if row < rows && column < columns {
+            for (c, values_of_column) in part.to_cols_array_2d().iter().enumerate() {
+                for (r, value) in values_of_column.iter().enumerate() {
+                    values[(row + r) * columns + column + c] += value;
+                }
+            }
+        }
+    };
+    add(0, 0, block.linear);
+    add(0, 3, block.linear_by_turn);
+    add(3, 0, block.turn_by_linear);
+    add(3, 3, block.turn);
+}
