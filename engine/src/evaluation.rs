@@ -186,7 +186,7 @@ fn advance(world: &mut World, integration: &mut Integration) -> Result<(), StepF
     } = integration;
     if std::mem::take(&mut world.resource_mut::<Discontinuity>().0) {
         evaluation.state.gather(world, &mut trajectory.state);
-        trajectory.rates_are_current = false;
+        trajectory.switch();
     }
     begin_interval(world, trajectory);
     if trajectory.time_s < *limit_s {
@@ -216,6 +216,6 @@ fn begin_interval(world: &mut World, trajectory: &mut Trajectory) {
             .resource_mut::<EnvironmentModel>()
             .wind
             .begin_interval(time_s);
-        trajectory.rates_are_current = false;
+        trajectory.switch();
     }
 }

@@ -158,7 +158,7 @@ impl Simulation {
             } = integration;
             placement::settle_in_wind(world, evaluation, scene)?;
             evaluation.state.gather(world, &mut trajectory.state);
-            trajectory.rates_are_current = false;
+            trajectory.switch();
             Ok(())
         })
         .unwrap_or(Ok(()))

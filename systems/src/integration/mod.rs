@@ -74,6 +74,9 @@ pub struct Trajectory {
     pub rates: Vec<f64>,
     /// Whether `rates` belong to `state`; something that switches at `time_s` makes them stale.
     pub rates_are_current: bool,
+    /// Whether something has switched at `time_s`, so that the next step must not trust the last; the
+    /// integrator clears it.
+    pub has_switched: bool,
     /// What the run has cost so far.
     pub cost: Cost,
 }
@@ -101,8 +104,15 @@ impl Trajectory {
             state,
             rates,
             rates_are_current: false,
+            has_switched: true,
             cost: Cost::default(),
         }
+    }
+
+    /// Notes that something has switched at the present.
+    pub fn switch(&mut self) {
+        self.rates_are_current = false;
+        self.has_switched = true;
     }
 
     /// Evaluates the rates of the current state unless they are known.
@@ -169,6 +179,9 @@ pub enum StepFailure {
         index: usize,
     },
 }
+
+/// The tolerance of a step is this part of the accuracy that is wanted in the end: errors add up.
+const PART_OF_ACCURACY: f64 = 0.3;
 
 /// No displacement in m and no speed in m/s of a balloon flight comes near this.
 pub const RUNAWAY: f64 = 1e8;

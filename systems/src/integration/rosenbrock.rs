@@ -18,7 +18,8 @@
 
 use super::step_control::StepControl;
 use super::{
-    Equations, Integrator, MechanicalEnergy, StepFailure, Trajectory, check_state, first_not_finite,
+    Equations, Integrator, MechanicalEnergy, PART_OF_ACCURACY, StepFailure, Trajectory,
+    check_state, first_not_finite,
 };
 
 const STAGES: usize = 4;
@@ -66,8 +67,6 @@ const B_EMBEDDED: [f64; STAGES] = [
 
 /// Order of the embedded solution, plus one.
 const ERROR_ORDER: u32 = 3;
-/// The tolerance of a step is this part of the error that is wanted in the end: errors add up.
-const PART_OF_ACCURACY: f64 = 0.25;
 /// The first step after something has switched is at most this, s.
 const FIRST_STEP_S: f64 = 0.01;
 /// Part of the kinetic energy that may come from nowhere in one step.
@@ -375,7 +374,7 @@ impl Integrator for Rosenbrock {
         trajectory: &mut Trajectory,
         limit_s: f64,
     ) -> Result<(), StepFailure> {
-        let switched = !trajectory.rates_are_current;
+        let switched = std::mem::take(&mut trajectory.has_switched);
         trajectory.refresh(equations)?;
         equations.linearise();
         match std::mem::replace(&mut self.steps, Steps::Fixed(f64::INFINITY)) {

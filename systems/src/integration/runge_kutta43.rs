@@ -6,13 +6,12 @@
 
 use super::step_control::StepControl;
 use super::{
-    Equations, Integrator, StepFailure, Trajectory, check_state, combine, first_not_finite,
+    Equations, Integrator, PART_OF_ACCURACY, StepFailure, Trajectory, check_state, combine,
+    first_not_finite,
 };
 
 /// Order of the embedded solution, plus one.
 const ERROR_ORDER: u32 = 4;
-/// The tolerance of a step is this part of the error that is wanted in the end: errors add up.
-const PART_OF_ACCURACY: f64 = 0.25;
 /// The first step after something has switched is at most this, s.
 const FIRST_STEP_S: f64 = 0.01;
 
@@ -91,7 +90,7 @@ impl Integrator for RungeKutta43 {
         trajectory: &mut Trajectory,
         limit_s: f64,
     ) -> Result<(), StepFailure> {
-        if !trajectory.rates_are_current {
+        if std::mem::take(&mut trajectory.has_switched) {
             self.control.restart(FIRST_STEP_S);
         }
         trajectory.refresh(equations)?;

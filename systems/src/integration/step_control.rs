@@ -2,9 +2,11 @@
 //! h' = h s err^(-0.7/q) err_previous^(0.4/q), with the safety s = 0.9, the factor within 0.2 and 4,
 //! and no growth after a rejection; q is the order of the error estimate plus one.
 
-const SAFETY: f64 = 0.9;
+const SAFETY: f64 = 0.93;
 const SMALLEST_FACTOR: f64 = 0.2;
 const LARGEST_FACTOR: f64 = 4.0;
+/// A limit within this many steps is reached in equal ones.
+const FEW_STEPS: f64 = 4.0;
 /// Steps are not cut below this part of the time (or of a second).
 const ROUND_OFF: f64 = 1e-14;
 
@@ -33,14 +35,16 @@ impl StepControl {
 
     /// The next step from `time_s`, s, and whether it ends on `limit_s`.
     ///
-    /// A limit within two steps is reached in two equal ones, so that no sliver remains.
+    /// A limit within a few steps is reached in equal ones, so that no sliver remains and none is longer
+    /// than need be.
     #[must_use]
     pub fn propose(&self, time_s: f64, limit_s: f64) -> (f64, bool) {
         let remaining = limit_s - time_s;
-        if remaining <= self.step_s * (1.0 + 1e-9) {
+        let count = (remaining / self.step_s - 1e-9).ceil();
+        if count <= 1.0 {
             (remaining, true)
-        } else if remaining < 2.0 * self.step_s {
-            (0.5 * remaining, false)
+        } else if count <= FEW_STEPS {
+            (remaining / count, false)
         } else {
             (self.step_s, false)
         }
@@ -67,12 +71,16 @@ impl StepControl {
         };
         let next = (h * factor.clamp(SMALLEST_FACTOR, most)).min(self.longest_s);
         // A step that a limit has cut says little of how long the next may be.
-        self.step_s = if cut || h < 0.999 * self.step_s {
+        let shortened = cut || h < 0.999 * self.step_s;
+        self.step_s = if shortened {
             next.max(self.step_s)
         } else {
             next
         };
-        self.previous_error = error.max(1e-4);
+        // Nor is its error one to compare the next with.
+        if !shortened {
+            self.previous_error = error.max(1e-4);
+        }
         self.after_rejection = false;
         true
     }

@@ -1,6 +1,6 @@
 //! How large an error of a step is, for a world of tethers: in metres, and in the strain of segments.
 //!
-//! Positions count over the tolerance, rotations times their arm. The strain error
+//! Positions of bodies count over the tolerance, rotations times their arm, positions of nodes less. The strain error
 //! `k |t.(e_(s+1) - e_s)|` counts over a tenth of a reference tension: at a loose tolerance in metres
 //! an error within it can still be a tension that no tether bears, and throws the chain into a slack
 //! rattle. Velocities do not count: they would make the step follow axial waves that the method damps.
@@ -11,10 +11,13 @@ use super::body_block::Twist;
 use super::derivatives::{Derivatives, LinearEnd, LinearSegment};
 use super::topology::{End, Topology};
 
+/// Errors of nodes count by this beside bodies: they are transverse waves of the tethers, most of which
+/// average out before they reach a body.
+const WEIGHT_OF_NODES: f64 = 0.25;
 /// Part of the reference tension that a strain error may be.
 const PART_OF_TENSION: f64 = 0.1;
 
-/// The largest error of a position in `e`, m, and its place in the state.
+/// The largest error of a position in `e`, weighed, in m, and its place in the state.
 #[must_use]
 pub fn position_error(topology: &Topology, e: &[f64]) -> (f64, usize) {
     let mut largest = (0.0, 0);
@@ -29,11 +32,16 @@ pub fn position_error(topology: &Topology, e: &[f64]) -> (f64, usize) {
         let turn = DVec3::from_slice(&e[at + 3..]).length_squared();
         consider(body.arm_m * body.arm_m * turn, at + 3);
     }
+    let weight = if topology.bodies.is_empty() {
+        1.0
+    } else {
+        WEIGHT_OF_NODES
+    };
     for line in &topology.lines {
         let nodes = &e[line.first_state..line.first_state + 3 * line.nodes];
         for (i, node) in nodes.chunks_exact(3).enumerate() {
             let square = DVec3::from_slice(node).length_squared();
-            consider(square, line.first_state + 3 * i);
+            consider(weight * weight * square, line.first_state + 3 * i);
         }
     }
     (largest.0.sqrt(), largest.1)
