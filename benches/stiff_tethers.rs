@@ -16,11 +16,14 @@ use aerobot_engine::recording::frame::MemorySink;
 use aerobot_engine::recording::summary::Summary;
 use aerobot_engine::simulation::Simulation;
 
-const REPEATS: usize = 5;
+const REPEATS: usize = 1;
 const DURATION_S: f64 = 60.0;
 
 fn main() {
-    let sizes = [10, 20, 50, 100, 200, 500, 1000];
+    let sizes: Vec<usize> = std::env::var("SIZES")
+        .map_or(vec![10, 20, 50, 100, 200, 500, 1000], |v| {
+            v.split(",").map(|x| x.parse().unwrap()).collect()
+        });
     let args: Vec<String> = std::env::args().collect();
     let accuracy: f64 = args
         .iter()
@@ -39,7 +42,7 @@ fn main() {
     };
     for nodes in sizes {
         let scene = line(nodes, stiff);
-        let exact = end(&run(&scene, "Auto(accuracy_m: 1e-5)").1);
+        let exact = end(&run(&scene, "Auto(accuracy_m: 1e-1)").1);
         let mut best = f64::INFINITY;
         let mut last = None;
         for _ in 0..REPEATS {

@@ -115,7 +115,9 @@ impl Linearisation {
         let mut largest_gap_m = 0.0_f64;
         for (segment, geometry, tension, own) in self.segments.iter(world) {
             let index = segment.from_point;
+            let drag = Symmetric3::part_of(own.drag_n_s_m);
             derivatives.segments[index] = LinearSegment {
+                drag,
                 direction: geometry.direction,
                 stiffness_n_m: own.axial_stiffness_n_m,
                 damping_n_s_m: own.axial_damping_n_s_m,
@@ -125,7 +127,6 @@ impl Linearisation {
                 tension_n: tension.0,
             };
             largest_gap_m = largest_gap_m.max(own.gap_m);
-            let drag = Symmetric3::part_of(own.drag_n_s_m);
             let [first, second] = &mut derivatives.points[index..index + 2] else {
                 continue;
             };

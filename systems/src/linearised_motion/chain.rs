@@ -1,17 +1,15 @@
 //! Elimination of the nodes of one tether, from its `from` end to its `to` end, in linear time.
 //!
-//! The nodes of a tether couple through its segments alone, and the block of a segment is
-//! `E = p t t' + q I` (t its direction). With `A_i` the diagonal block of node i, block Gaussian
-//! elimination (Golub and Van Loan 2013, sec. 4.5.1) is
+//! The nodes of a tether couple through its segments alone: the matrix has `-E_i`, symmetric, beside the
+//! diagonal, and `m_i + E_(i-1) + E_i` on it. Block Gaussian elimination (Golub and Van Loan 2013,
+//! sec. 4.5.1) is
 //!
 //! ```text
 //! F_1 = m_1 + E_0     C_i = (F_i + E_i)^-1     G_i = E_i C_i     F_(i+1) = m_(i+1) + G_i F_i
 //! forward    r_(i+1) += G_i r_i          backward   x_i = C_i r_i + G_i' x_(i+1)
-//! E C = p t u' + q C,   u = C t
 //! ```
 //!
-//! m_i the block of the node alone; `E - E C E = G F` in this form has no cancellation, however stiff
-//! the segments are.
+//! `E - E C E = G F` in this form has no cancellation, however stiff the segments are.
 //!
 //! Where the `from` end is on a free body, its motion a couples to every node by the spike
 //! `Z_1 = -E_0`, `Z_(i+1) = G_i Z_i`, carried along as `P_i = C_i Z_i`. What is left of the tether is
@@ -24,45 +22,6 @@
 use glam::{DMat3, DVec3};
 
 use super::symmetric3::Symmetric3;
-
-/// The block of a segment, `along t t' + all I`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SegmentBlock {
-    /// Direction t.
-    pub direction: DVec3,
-    /// p.
-    pub along: f64,
-    /// q.
-    pub all: f64,
-}
-
-impl SegmentBlock {
-    /// As a matrix.
-    #[inline(always)]
-    #[must_use]
-    pub fn matrix(&self) -> Symmetric3 {
-        Symmetric3::along(self.direction, self.along, self.all)
-    }
-
-    /// The product with a vector.
-    #[inline(always)]
-    #[must_use]
-    pub fn times(&self, v: DVec3) -> DVec3 {
-        self.along * self.direction.dot(v) * self.direction + self.all * v
-    }
-
-    /// `E C` of the compliance `c` before the segment.
-    #[inline(always)]
-    fn carry(&self, c: &Symmetric3) -> DMat3 {
-        let (q, u) = (self.all, c.times(self.direction));
-        let t = self.along * self.direction;
-        DMat3::from_cols(
-            t * u.x + q * DVec3::new(c.xx, c.xy, c.xz),
-            t * u.y + q * DVec3::new(c.xy, c.yy, c.yz),
-            t * u.z + q * DVec3::new(c.xz, c.yz, c.zz),
-        )
-    }
-}
 
 /// What is left of a tether between its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,11 +75,11 @@ impl Chain {
     pub fn factorise(
         &mut self,
         own: &[Symmetric3],
-        segments: &[SegmentBlock],
+        segments: &[Symmetric3],
     ) -> Result<EndStiffness, NotPositive> {
         let nodes = own.len();
         let first = segments[0];
-        let mut before = first.matrix();
+        let mut before = first;
         let mut all_positive = true;
         let spikes = &mut self.spike;
         let (compliance, carried) = (&mut self.compliance[..nodes], &mut self.carried[..nodes]);
@@ -128,13 +87,13 @@ impl Chain {
         let mut worst = 0;
         for i in 0..nodes {
             let so_far = own[i].plus(before);
-            let (inverse, positive) = so_far.plus(segments[i].matrix()).inverse();
+            let (inverse, positive) = so_far.plus(segments[i]).inverse();
             if !positive && all_positive {
                 all_positive = false;
                 worst = i;
             }
             compliance[i] = inverse;
-            let once = segments[i].carry(&inverse);
+            let once = segments[i].by(&inverse);
             carried[i] = once;
             before = Symmetric3::product(&once, &so_far);
         }
@@ -147,8 +106,8 @@ impl Chain {
             to_to: before.into(),
         };
         if self.from_moves {
-            let mut spike = -DMat3::from(first.matrix());
-            left.from_from = first.matrix().into();
+            let mut spike = -DMat3::from(first);
+            left.from_from = first.into();
             for i in 0..nodes {
                 let p = DMat3::from(compliance[i]) * spike;
                 left.from_from -= spike.transpose() * p;
@@ -213,11 +172,11 @@ mod tests {
     fn a_chain_answers_as_the_dense_system_does() {
         let mut random = Random::new(7);
         for nodes in [0, 1, 2, 9] {
-            let segments: Vec<SegmentBlock> = (0..=nodes)
-                .map(|_| SegmentBlock {
-                    direction: vector(&mut random).normalize(),
-                    along: 1e3 * (1.2 + random.signed()),
-                    all: 1.2 + random.signed(),
+            let segments: Vec<Symmetric3> = (0..=nodes)
+                .map(|_| {
+                    let along = 1e3 * (1.2 + random.signed());
+                    let direction = vector(&mut random).normalize();
+                    Symmetric3::along(direction, along, 1.2 + random.signed())
                 })
                 .collect();
             let own: Vec<Symmetric3> = (0..nodes)
@@ -240,7 +199,7 @@ mod tests {
                 add(i + 1, i + 1, (*own).into(), 1.0);
             }
             for (s, segment) in segments.iter().enumerate() {
-                let m = DMat3::from(segment.matrix());
+                let m = DMat3::from(*segment);
                 for (i, j, sign) in [
                     (s, s, 1.0),
                     (s + 1, s + 1, 1.0),

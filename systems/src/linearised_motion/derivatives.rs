@@ -23,6 +23,8 @@ pub struct LinearSegment {
     pub closing_m_s: f64,
     /// Tension, N.
     pub tension_n: f64,
+    /// -dF/dv of the drag of the whole segment, N s/m.
+    pub drag: Symmetric3,
 }
 
 impl LinearSegment {
@@ -34,7 +36,8 @@ impl LinearSegment {
     }
 }
 
-/// A point of a tether at the state: mass of a node; what damps a node or an attachment.
+/// A point of a tether at the state: mass of a node; what damps a node or an attachment, half the drag
+/// of each segment beside it included.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LinearPoint {
     /// Mass of a node, kg.

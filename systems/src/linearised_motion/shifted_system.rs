@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::body_block::{BodyBlock, Twist};
-use super::chain::{Chain, SegmentBlock};
+use super::chain::Chain;
 use super::derivatives::Derivatives;
 use super::symmetric3::Symmetric3;
 use super::topology::{End, Topology};
@@ -17,6 +17,21 @@ pub struct NotSolvable {
     pub index: usize,
 }
 
+/// `along t t' + all I` of a segment in the direction t.
+#[derive(Clone, Copy, Debug, Default)]
+struct ElasticBlock {
+    direction: DVec3,
+    along: f64,
+    all: f64,
+}
+
+impl ElasticBlock {
+    #[inline(always)]
+    fn times(&self, v: DVec3) -> DVec3 {
+        self.along * self.direction.dot(v) * self.direction + self.all * v
+    }
+}
+
 /// Factors of the matrix of one step, and scratch for its solutions.
 #[derive(Clone, Debug)]
 pub struct ShiftedSystem {
@@ -24,8 +39,8 @@ pub struct ShiftedSystem {
     /// g, s.
     g: f64,
     /// Blocks of the segments: of the matrix, and of g^2 K alone.
-    blocks: Vec<SegmentBlock>,
-    elastic: Vec<SegmentBlock>,
+    blocks: Vec<Symmetric3>,
+    elastic: Vec<ElasticBlock>,
     /// Diagonal blocks of the nodes without those of the segments.
     own: Vec<Symmetric3>,
     chains: Vec<Chain>,
@@ -59,8 +74,8 @@ impl ShiftedSystem {
             .collect();
         Self {
             g: 0.0,
-            blocks: vec![SegmentBlock::default(); topology.points],
-            elastic: vec![SegmentBlock::default(); topology.points],
+            blocks: vec![Symmetric3::default(); topology.points],
+            elastic: vec![ElasticBlock::default(); topology.points],
             own: vec![Symmetric3::default(); topology.points],
             chains,
             elimination: Elimination::analyse(&pattern),
@@ -133,16 +148,15 @@ impl ShiftedSystem {
             };
             let all = g2 * segment.geometric_n_m;
             let along = g2 * k - all;
-            *elastic = SegmentBlock {
+            *elastic = ElasticBlock {
                 direction: segment.direction,
                 along,
                 all,
             };
-            *block = SegmentBlock {
-                direction: segment.direction,
-                along: along + g * c,
-                all,
-            };
+            // Drag goes with the mean velocity of the ends: a quarter for each of the four blocks,
+            // of which the diagonal ones have been given a half.
+            *block = Symmetric3::along(segment.direction, along + g * c, all)
+                .plus_scaled(segment.drag, -0.25 * g);
         }
         for (own, point) in self.own.iter_mut().zip(&derivatives.points) {
             *own = Symmetric3::identity(point.mass_kg)

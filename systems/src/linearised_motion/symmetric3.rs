@@ -82,6 +82,17 @@ impl Symmetric3 {
         }
     }
 
+    /// The product with another symmetric matrix.
+    #[inline(always)]
+    #[must_use]
+    pub fn by(&self, other: &Self) -> DMat3 {
+        DMat3::from_cols(
+            self.times(DVec3::new(other.xx, other.xy, other.xz)),
+            self.times(DVec3::new(other.xy, other.yy, other.yz)),
+            self.times(DVec3::new(other.xz, other.yz, other.zz)),
+        )
+    }
+
     /// The product `g f` where it is known to be symmetric.
     #[inline(always)]
     #[must_use]
