@@ -1,117 +1,194 @@
 //! What a simulated second of stiff tethers costs: `cargo bench --bench stiff_tethers`.
 //!
 //! The 1 km line of the README's comparison with MoorDyn (a 4 kg sphere on 0.237 kg of line in a wind of
-//! 5 m/s, let go from a slant), its stiff variant, and the paper's cases. One core, release build; the
-//! least of several repeats, cases interleaved. With `-- --peer` only the lines that
-//! `benches/peers/moordyn_line.py` reads.
+//! 5 m/s, let go from a slant) at seven numbers of nodes, its stiffer sister, and the paper's cases. One
+//! core, release build, CPU time of the run with its recording; the least of five repeats, cases
+//! interleaved. The error is the largest distance of a body from a run a thousand times more accurate, at
+//! every second. `-- --peer` prints the lines that `benches/peers/moordyn_line.py` reads.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a bench may fail loudly")]
 
 use std::fmt::Write as _;
 use std::path::Path;
-use std::time::Instant;
 
 use aerobot_engine::plugin::Simulator;
-use aerobot_engine::recording::frame::MemorySink;
+use aerobot_engine::recording::frame::{MemorySink, NullSink};
 use aerobot_engine::recording::summary::Summary;
-use aerobot_engine::simulation::Simulation;
+use aerobot_engine::run_folder::thread_cpu_time;
+use aerobot_engine::scene::Scene;
 
-const REPEATS: usize = 1;
-const DURATION_S: f64 = 60.0;
+const REPEATS: usize = 5;
+const SIZES: [usize; 7] = [10, 20, 50, 100, 200, 500, 1000];
+
+/// A case to be timed.
+struct Case {
+    name: String,
+    nodes: usize,
+    scene: String,
+    /// The integrator that is timed, and the one that says what is right.
+    integrator: String,
+    exact: String,
+}
+
+/// What a case takes.
+struct Timed {
+    us_per_simulated_s: f64,
+    summary: Summary,
+    error_m: f64,
+}
 
 fn main() {
-    let sizes: Vec<usize> = std::env::var("SIZES")
-        .map_or(vec![10, 20, 50, 100, 200, 500, 1000], |v| {
-            v.split(",").map(|x| x.parse().unwrap()).collect()
-        });
-    let args: Vec<String> = std::env::args().collect();
-    let accuracy: f64 = args
+    let only_peer = std::env::args().any(|argument| argument == "--peer");
+    let lines: Vec<Case> = SIZES
         .iter()
-        .position(|a| a == "--accuracy")
-        .and_then(|i| args.get(i + 1))
-        .and_then(|a| a.parse().ok())
-        .unwrap_or(0.01);
-    let auto = args
-        .iter()
-        .find(|a| a.as_str() == "--auto")
-        .map_or("Implicit", |_| "Auto");
-    let stiff = if args.iter().any(|a| a == "--stiff") {
-        1.15e7
-    } else {
-        11500.0
-    };
-    for nodes in sizes {
-        let scene = line(nodes, stiff);
-        let exact = end(&run(&scene, "Auto(accuracy_m: 1e-1)").1);
-        let mut best = f64::INFINITY;
-        let mut last = None;
-        for _ in 0..REPEATS {
-            let (wall_s, sink, summary) = {
-                let r = run(&scene, &format!("{auto}(accuracy_m: {accuracy})"));
-                (r.0, r.1, r.2)
-            };
-            best = best.min(wall_s);
-            last = Some((end(&sink), summary));
+        .map(|nodes| case("1 km line", *nodes, line(*nodes, 11.5e3), LINE_ACCURACY_M))
+        .collect();
+    let timed = time(&lines);
+    if only_peer {
+        for (case, timed) in lines.iter().zip(&timed) {
+            println!(
+                "peer,{},{},{:.3},{:.2e}",
+                case.nodes, timed.summary.steps, timed.us_per_simulated_s, timed.error_m
+            );
         }
-        let (found, summary) = last.expect("it ran");
-        let error = exact
-            .iter()
-            .zip(&found)
-            .map(|(a, b)| distance(*a, *b))
-            .fold(0.0, f64::max);
+        return;
+    }
+    println!(
+        "| case | N | accuracy asked | steps (implicit, rejected) | largest error of a body | CPU per simulated s |"
+    );
+    println!("|---|---|---|---|---|---|");
+    print(&lines, &timed);
+    let (first, last) = (&timed[3], &timed[6]);
+    let exponent = libm::log10(last.us_per_simulated_s / first.us_per_simulated_s);
+    let others = [
+        case("1 km line, EA x 1000", 100, line(100, 11.5e6), 0.01),
+        case("900 m, three gusts", 10, paper("comparison_900m"), 0.001),
+        case("9.7 km towline", 100, paper("towing_9700m"), 0.01),
+    ];
+    let timed = time(&others);
+    print(&others, &timed);
+    println!();
+    println!("exponent of cost against N from 100 to 1000: {exponent:.3}");
+}
+
+/// With this the line's end keeps within 1 cm of where it should be over its 60 s.
+const LINE_ACCURACY_M: f64 = 0.1;
+
+fn case(name: &str, nodes: usize, scene: String, accuracy_m: f64) -> Case {
+    Case {
+        name: name.to_owned(),
+        nodes,
+        scene,
+        integrator: format!("Auto(accuracy_m: {accuracy_m:?})"),
+        exact: format!("Auto(accuracy_m: {:?})", 1e-3 * accuracy_m),
+    }
+}
+
+fn print(cases: &[Case], timed: &[Timed]) {
+    for (case, timed) in cases.iter().zip(timed) {
+        let summary = &timed.summary;
         println!(
-            "peer,{nodes},{},{:.2},{error:.2e}  rejected {} implicit {} us/step/node {:.3}",
+            "| {} | {} | {} | {} ({}, {}) | {:.1} mm | {:.1} us |",
+            case.name,
+            case.nodes,
+            case.integrator,
             summary.steps,
-            best * 1e6 / DURATION_S,
-            summary.rejected_steps,
             summary.implicit_steps,
-            best * 1e9 / (summary.steps as f64 * nodes as f64)
+            summary.rejected_steps,
+            1e3 * timed.error_m,
+            timed.us_per_simulated_s
         );
     }
 }
 
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
-}
-
-fn end(sink: &MemorySink) -> Vec<[f64; 3]> {
-    sink.frames
-        .iter()
-        .flat_map(|frame| &frame.states)
-        .filter(|row| &*row.entity == "probe")
-        .map(|row| row.position_m.to_array())
-        .collect()
-}
-
-fn run(scene: &str, integrator: &str) -> (f64, MemorySink, Summary) {
-    let mut simulation = build(scene, &[format!("run.integrator={integrator}")]);
-    let mut sink = MemorySink::default();
-    let start = Instant::now();
-    let summary = simulation.run(&mut sink, &mut |_| {});
-    let wall_s = start.elapsed().as_secs_f64();
-    assert_eq!(summary.outcome, "done", "{:?}", summary.stopped);
-    (wall_s, sink, summary)
-}
-
-/// The line, let go at rest and straight, tilted by 0.3 rad towards +x, stretched by what it carries.
-fn line(nodes: usize, stiffness: f64) -> String {
-    let (length, line_mass, g) = (1000.0, 0.237, 8.87);
-    let segments = nodes as f64 + 1.0;
-    let node = line_mass / nodes as f64;
-    let k = stiffness / length * segments;
-    let damping = 0.2 * (k * node).sqrt() / segments;
-    let diameter: f64 = 0.458e-3;
-    let density = 2.37e-4 / (0.25 * std::f64::consts::PI * diameter * diameter);
-    let (sin, cos) = 0.3_f64.sin_cos();
-    let mut along = 0.0;
-    let mut positions = String::new();
-    for index in 1..=nodes + 1 {
-        let below = 4.0 + node * (nodes + 1 - index) as f64;
-        along += length / segments + below * g * cos / k;
-        if index <= nodes {
-            let _ = write!(positions, "({}, 0, {}),", along * sin, -along * cos);
+/// Times all cases, interleaved.
+fn time(cases: &[Case]) -> Vec<Timed> {
+    let simulator = Simulator::new();
+    let mut best = vec![f64::INFINITY; cases.len()];
+    for _ in 0..REPEATS {
+        for (case, best) in cases.iter().zip(&mut best) {
+            let scene = load(&simulator, case, &case.integrator);
+            let mut simulation = simulator
+                .build(&scene)
+                .unwrap_or_else(|error| panic!("{error}"));
+            let start = thread_cpu_time();
+            let summary = simulation.run(&mut NullSink, &mut |_| {});
+            let cpu_s = (thread_cpu_time() - start).as_secs_f64();
+            *best = best.min(1e6 * cpu_s / summary.simulated_s);
         }
     }
+    let finish = |(case, us_per_simulated_s): (&Case, f64)| {
+        let (exact, _) = fly(&simulator, case, &case.exact);
+        let (found, summary) = fly(&simulator, case, &case.integrator);
+        Timed {
+            us_per_simulated_s,
+            summary,
+            error_m: largest_distance_m(&exact, &found),
+        }
+    };
+    cases.iter().zip(best).map(finish).collect()
+}
+
+fn load(simulator: &Simulator, case: &Case, integrator: &str) -> Scene {
+    let overrides = [format!("run.integrator={integrator}")];
+    simulator
+        .load_text("bench.ron", case.scene.clone(), Path::new("."), &overrides)
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Runs a case with its bodies kept.
+fn fly(simulator: &Simulator, case: &Case, integrator: &str) -> (MemorySink, Summary) {
+    let scene = load(simulator, case, integrator);
+    let mut simulation = simulator
+        .build(&scene)
+        .unwrap_or_else(|error| panic!("{error}"));
+    let mut sink = MemorySink::default();
+    let summary = simulation.run(&mut sink, &mut |_| {});
+    assert_eq!(summary.outcome, "done", "{:?}", summary.stopped);
+    (sink, summary)
+}
+
+/// Between the same bodies at the same times.
+fn largest_distance_m(a: &MemorySink, b: &MemorySink) -> f64 {
+    let rows = |sink: &MemorySink| -> Vec<_> {
+        let rows = sink.frames.iter().flat_map(|frame| frame.states.clone());
+        rows.filter(|row| !row.entity.contains('/')).collect()
+    };
+    let (a, b) = (rows(a), rows(b));
+    assert_eq!(a.len(), b.len());
+    let distances = a
+        .iter()
+        .zip(&b)
+        .map(|(a, b)| (a.position_m - b.position_m).length());
+    distances.fold(0.0, f64::max)
+}
+
+fn paper(name: &str) -> String {
+    let file = format!("{}/scenes/paper/{name}.ron", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(file).expect("the scene is in the repository")
+}
+
+/// The line of `nodes` nodes and axial stiffness `stiffness_n`, at rest and straight, tilted by 0.3 rad
+/// towards +x, each segment stretched by the weight below it times cos 0.3.
+fn line(nodes: usize, stiffness_n: f64) -> String {
+    let (length_m, line_kg, probe_kg, gravity) = (1000.0, 0.237, 4.0, 8.87);
+    let segments = nodes as f64 + 1.0;
+    let node_kg = line_kg / nodes as f64;
+    let stiffness_n_m = stiffness_n / length_m * segments;
+    let damping_n_s_m = 0.2 * (stiffness_n_m * node_kg).sqrt() / segments;
+    let diameter_m = 0.458e-3;
+    let density_kg_m3 = 2.37e-4 / (0.25 * std::f64::consts::PI * diameter_m * diameter_m);
+    let (sin, cos) = libm::sincos(0.3);
+    let mut along_m = 0.0;
+    let mut positions = String::new();
+    for number in 1..=nodes + 1 {
+        let below_kg = probe_kg + node_kg * (nodes + 1 - number) as f64;
+        along_m += length_m / segments + below_kg * gravity * cos / stiffness_n_m;
+        if number <= nodes {
+            let _ = write!(positions, "({}, 0, {}),", along_m * sin, -along_m * cos);
+        }
+    }
+    let (x_m, z_m) = (along_m * sin, -along_m * cos);
     format!(
         r#"(
             name: "line",
@@ -121,32 +198,21 @@ fn line(nodes: usize, stiffness: f64) -> String {
             entities: {{
                 "top": (Fixed: (position_m: (0, 0, 0))),
                 "probe": (
-                    Body: (mass_kg: 4), Sphere: (radius_m: 0.05), Drag: Constant(coefficient: 0.47),
-                    Pose: (position_m: ({}, 0, {})),
+                    Body: (mass_kg: {probe_kg}),
+                    Sphere: (radius_m: 0.05),
+                    Drag: Constant(coefficient: 0.47),
+                    Pose: (position_m: ({x_m}, 0, {z_m})),
                 ),
                 "line": (Tether: (
                     from: ("top", Centre), to: ("probe", Centre),
-                    length_m: {length}, nodes: {nodes}, diameter_m: {diameter}, density_kg_m3: {density},
-                    axial_stiffness_n: {stiffness}, damping_n_s_m: {damping}, lumping: Interior,
-                    drag: (normal: 1, tangential: 0.03), start: Positions([{positions}]),
+                    length_m: {length_m}, nodes: {nodes},
+                    diameter_m: {diameter_m}, density_kg_m3: {density_kg_m3},
+                    axial_stiffness_n: {stiffness_n}, damping_n_s_m: {damping_n_s_m},
+                    lumping: Interior, drag: (normal: 1, tangential: 0.03),
+                    start: Positions([{positions}]),
                 )),
             }},
-            run: (
-                duration_s: {DURATION_S}, output_every_s: {DURATION_S},
-                record: (nodes: Never, tethers: Never, channels: None),
-            ),
-        )"#,
-        along * sin,
-        -along * cos
+            run: (duration_s: 60, output_every_s: 60),
+        )"#
     )
-}
-
-fn build(scene: &str, overrides: &[String]) -> Simulation {
-    let simulator = Simulator::new();
-    let scene = simulator
-        .load_text("bench.ron", scene.to_owned(), Path::new("."), overrides)
-        .unwrap_or_else(|error| panic!("{error}"));
-    simulator
-        .build(&scene)
-        .unwrap_or_else(|error| panic!("{error}"))
 }

@@ -88,8 +88,8 @@ impl Equations for WorldEquations<'_> {
             .position_error(error, tolerance_m)
     }
 
-    fn strain_error(&mut self, error: &[f64]) -> (f64, usize) {
-        self.implicit.linearisation.strain_error(error)
+    fn strain_error(&mut self, error: &[f64], increment: &[f64]) -> (f64, usize) {
+        self.implicit.linearisation.strain_error(error, increment)
     }
 
     fn has_slack(&self) -> bool {

@@ -119,6 +119,7 @@ impl Linearisation {
             derivatives.segments[index] = LinearSegment {
                 drag,
                 direction: geometry.direction,
+                length_m: geometry.length_m,
                 stiffness_n_m: own.axial_stiffness_n_m,
                 damping_n_s_m: own.axial_damping_n_s_m,
                 geometric_n_m: own.geometric_stiffness_n_m,
@@ -207,9 +208,15 @@ impl Linearisation {
     }
 
     /// The largest error of a segment's tension over what is allowed.
-    pub(crate) fn strain_error(&self, error: &[f64]) -> (f64, usize) {
+    pub(crate) fn strain_error(&self, error: &[f64], increment: &[f64]) -> (f64, usize) {
         let topology = self.system.topology();
-        strain_error(topology, &self.derivatives, error, self.least_tension_n)
+        strain_error(
+            topology,
+            &self.derivatives,
+            error,
+            increment,
+            self.least_tension_n,
+        )
     }
 }
 

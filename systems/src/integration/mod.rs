@@ -41,8 +41,9 @@ pub trait Equations {
     /// what weighs as much in a first-order state. With the place in the state where it is largest.
     fn position_error(&mut self, error: &[f64], tolerance_m: f64) -> (f64, usize);
 
-    /// The same for the strain of tethers as the motion was linearised last.
-    fn strain_error(&mut self, error: &[f64]) -> (f64, usize);
+    /// The same for the strain of tethers, for a step by `increment` from where the motion was linearised
+    /// last.
+    fn strain_error(&mut self, error: &[f64], increment: &[f64]) -> (f64, usize);
 
     /// Whether a tether was slack where the motion was linearised last.
     fn has_slack(&self) -> bool;

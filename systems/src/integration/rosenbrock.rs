@@ -69,6 +69,9 @@ const B_EMBEDDED: [f64; STAGES] = [
 const ERROR_ORDER: u32 = 3;
 /// The first step after something has switched is at most this, s.
 const FIRST_STEP_S: f64 = 0.01;
+/// In steps up to this, s, the error of each counts, for in fast motion errors of either sign cancel; in
+/// longer ones, of a motion that creeps, they add up, and the error per this time counts.
+const PER_STEP_UP_TO_S: f64 = 0.5;
 /// Part of the kinetic energy that may come from nowhere in one step.
 const ENERGY_GAIN: f64 = 1e-3;
 /// After a step that gained energy, the next is this part of it.
@@ -135,6 +138,7 @@ pub struct Rosenbrock {
     u: [Vec<f64>; STAGES],
     stage: Vec<f64>,
     error: Vec<f64>,
+    increment: Vec<f64>,
     trial: Vec<f64>,
     rates: Vec<f64>,
 }
@@ -164,6 +168,7 @@ impl Rosenbrock {
             u: std::array::from_fn(|_| vec![0.0; length]),
             stage: vec![0.0; length],
             error: vec![0.0; length],
+            increment: vec![0.0; length],
             trial: vec![0.0; length],
             rates: vec![0.0; length],
         }
@@ -219,9 +224,11 @@ impl Rosenbrock {
         let Tableau { m, e, .. } = &self.tableau;
         let [u1, u2, u3, u4] = &self.u;
         let stages = u1.iter().zip(u2).zip(u3.iter().zip(u4));
-        let out = self.trial.iter_mut().zip(&mut self.error).zip(start);
-        for (((trial, error), start), ((u1, u2), (u3, u4))) in out.zip(stages) {
-            *trial = start + (m[0] * u1 + m[1] * u2 + m[2] * u3 + m[3] * u4);
+        let out = self.trial.iter_mut().zip(&mut self.increment);
+        let out = out.zip(&mut self.error).zip(start);
+        for ((((trial, increment), error), start), ((u1, u2), (u3, u4))) in out.zip(stages) {
+            *increment = m[0] * u1 + m[1] * u2 + m[2] * u3 + m[3] * u4;
+            *trial = start + *increment;
             *error = e[0] * u1 + e[1] * u2 + e[2] * u3 + e[3] * u4;
         }
     }
@@ -253,8 +260,10 @@ impl Rosenbrock {
         start: Option<MechanicalEnergy>,
         end_s: f64,
     ) -> Result<Verdict, StepFailure> {
+        let h = end_s - trajectory.time_s;
+        let tolerance_m = tolerance_m * (PER_STEP_UP_TO_S / h).min(1.0);
         let mut largest = equations.position_error(&self.error, tolerance_m);
-        let strain = equations.strain_error(&self.error);
+        let strain = equations.strain_error(&self.error, &self.increment);
         if strain.0 > largest.0 {
             largest = strain;
         }
@@ -264,7 +273,6 @@ impl Rosenbrock {
             return Ok(Verdict::Inaccurate(error, index));
         }
         self.evaluate_trial(equations, trajectory, end_s)?;
-        let h = end_s - trajectory.time_s;
         if start.is_some_and(|start| start.gains(&equations.energy(), h)) {
             return Ok(Verdict::GainsEnergy(index));
         }

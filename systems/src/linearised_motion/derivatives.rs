@@ -11,6 +11,8 @@ use super::topology::{End, Topology};
 pub struct LinearSegment {
     /// Unit vector from its first point to its second, inertial frame.
     pub direction: DVec3,
+    /// Length, m.
+    pub length_m: f64,
     /// dT/dL while taut, N/m.
     pub stiffness_n_m: f64,
     /// dT/d(dL/dt) while taut, N s/m.

@@ -1,7 +1,7 @@
 //! How large an error of a step is, for a world of tethers: in metres, and in the strain of segments.
 //!
 //! Positions of bodies count over the tolerance, rotations times their arm, positions of nodes less. The strain error
-//! `k |t.(e_(s+1) - e_s)|` counts over a tenth of a reference tension: at a loose tolerance in metres
+//! `k (|t.(e_(s+1) - e_s)| + |e_(s+1) - e_s|^2 / 2 L)`, t the direction at the end of the step, counts over a part of a reference tension: at a loose tolerance in metres
 //! an error within it can still be a tension that no tether bears, and throws the chain into a slack
 //! rattle. Velocities do not count: they would make the step follow axial waves that the method damps.
 
@@ -14,8 +14,9 @@ use super::topology::{End, Topology};
 /// Errors of nodes count by this beside bodies: they are transverse waves of the tethers, most of which
 /// average out before they reach a body.
 const WEIGHT_OF_NODES: f64 = 0.25;
-/// Part of the reference tension that a strain error may be.
-const PART_OF_TENSION: f64 = 0.1;
+/// Part of the reference tension that a strain error may be. At a tenth, very
+/// stiff lines slowly gather energy at loose tolerances; at this they do not, and need no more steps.
+const PART_OF_TENSION: f64 = 0.05;
 
 /// The largest error of a position in `e`, weighed, in m, and its place in the state.
 #[must_use]
@@ -47,13 +48,14 @@ pub fn position_error(topology: &Topology, e: &[f64]) -> (f64, usize) {
     (largest.0.sqrt(), largest.1)
 }
 
-/// The largest error of a segment's tension for the error `e`, over what is allowed, and a place in the
-/// state by it. `least_tension_n` is the smallest reference tension.
+/// The largest error of a segment's tension for the error `e` of a step by `increment`, over what is
+/// allowed, and a place in the state by it. `least_tension_n` is the smallest reference tension.
 #[must_use]
 pub fn strain_error(
     topology: &Topology,
     derivatives: &Derivatives,
     e: &[f64],
+    increment: &[f64],
     least_tension_n: f64,
 ) -> (f64, usize) {
     let mut largest = (0.0, 0);
@@ -61,21 +63,35 @@ pub fn strain_error(
     for (line, ends) in topology.lines.iter().zip(&derivatives.ends) {
         let segments = &derivatives.segments[line.segments()];
         let mut before = end_error(topology, line.from, &ends[0], e);
-        let mut consider = |segment: &LinearSegment, step: DVec3, node: usize| {
-            let error = segment.stiffness_n_m * segment.direction.dot(step).abs();
+        let mut moved = end_error(topology, line.from, &ends[0], increment);
+        let mut consider = |segment: &LinearSegment, step: DVec3, turn: DVec3, node: usize| {
+            let span = segment.length_m * segment.direction + turn;
+            let length_m = span.length_squared().sqrt().max(0.5 * segment.length_m);
+            let along = span.dot(step).abs() + 0.5 * step.length_squared();
+            let error = segment.stiffness_n_m * along / length_m;
             if error > largest.0 {
                 largest = (error, line.first_state + 3 * node);
             }
             tension_n = tension_n.max(segment.tension_n);
         };
-        let nodes = &e[line.first_state..line.first_state + 3 * line.nodes];
-        for (i, (node, segment)) in nodes.chunks_exact(3).zip(segments).enumerate() {
-            let here = DVec3::from_slice(node);
-            consider(segment, here - before, i);
+        let states = line.first_state..line.first_state + 3 * line.nodes;
+        let nodes = e[states.clone()]
+            .chunks_exact(3)
+            .zip(increment[states].chunks_exact(3));
+        for (i, ((node, shift), segment)) in nodes.zip(segments).enumerate() {
+            let (here, to) = (DVec3::from_slice(node), DVec3::from_slice(shift));
+            consider(segment, here - before, to - moved, i);
             before = here;
+            moved = to;
         }
         let last = end_error(topology, line.to, &ends[1], e) - before;
-        consider(&segments[line.nodes], last, line.nodes.saturating_sub(1));
+        let turn = end_error(topology, line.to, &ends[1], increment) - moved;
+        consider(
+            &segments[line.nodes],
+            last,
+            turn,
+            line.nodes.saturating_sub(1),
+        );
     }
     (largest.0 / (PART_OF_TENSION * tension_n), largest.1)
 }
