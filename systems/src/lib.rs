@@ -9,3 +9,4 @@ pub mod forces;
 pub mod instruments;
 pub mod integration;
 pub mod nonlinear_solver;
+pub mod towed_cable;
