@@ -18,8 +18,10 @@ const SLACK: f64 = 1e-6;
 const BRACKET_TOLERANCE: f64 = 1e-13;
 /// Distance of the top from where it is held that is accepted, in parts of the length.
 const MISS_TOLERANCE: f64 = 1e-10;
-/// Widenings of the bracket: each gains what the line is found to reach too far or too little.
-const WIDENINGS: usize = 60;
+/// Strides of the search for a change of sign, in parts of the length, and how many of them: a line
+/// may stretch to many times its length.
+const STRIDE: f64 = 1.0 / 16.0;
+const STRIDES: u32 = 16 * 16;
 
 /// The line at one place, seen from the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,9 +58,7 @@ impl Shooting<'_> {
     pub(super) fn body_altitude_m(&self) -> Result<f64, TowedCableError> {
         let top_m = self.cable.top_altitude_m;
         let length_m = self.cable.line.length_m;
-        // Straight down is the lowest that a line reaches which does not stretch.
-        let low = self.widen(top_m - length_m, -1.0)?;
-        let high = self.widen(top_m, 1.0)?;
+        let (low, high) = self.bracket()?;
         let tolerance = (BRACKET_TOLERANCE * length_m).max(2.0 * f64::EPSILON * top_m.abs());
         let found = bracketed_root::find(low, high, tolerance, &mut |place| self.miss_m(place))?;
         if found.value.abs() <= MISS_TOLERANCE * length_m {
@@ -77,20 +77,32 @@ impl Shooting<'_> {
         }
     }
 
-    /// Goes from `start_m` in the direction of `sign` (downwards -1) to where the top comes out too
-    /// low or too high by that sign.
-    fn widen(&self, start_m: f64, sign: f64) -> Result<Sample, TowedCableError> {
-        let mut place = start_m;
-        for _ in 0..WIDENINGS {
+    /// Strides from the top, downwards if a body there would be too high, to the first change of sign.
+    ///
+    /// From there and not from the depth of the straight line, which the line may never come near:
+    /// the air is dense and the wind strong there.
+    fn bracket(&self) -> Result<(Sample, Sample), TowedCableError> {
+        let top_m = self.cable.top_altitude_m;
+        let sample = |place: f64| {
             let value = self.miss_m(place)?;
-            if sign * value >= 0.0 {
-                return Ok(Sample { place, value });
+            Ok(Sample { place, value })
+        };
+        let mut near = sample(top_m)?;
+        let stride_m = STRIDE * self.cable.line.length_m * -f64::signum(near.value);
+        for count in 1..=STRIDES {
+            let far = sample(top_m + f64::from(count) * stride_m)?;
+            if far.value * stride_m >= 0.0 {
+                return Ok(if stride_m < 0.0 {
+                    (far, near)
+                } else {
+                    (near, far)
+                });
             }
-            place -= 1.5 * value - sign * 1e-3 * self.cable.line.length_m;
+            near = far;
         }
         Err(TowedCableError::NoEquilibrium {
-            lowest_m: start_m.min(place),
-            highest_m: start_m.max(place),
+            lowest_m: top_m.min(near.place),
+            highest_m: top_m.max(near.place),
         })
     }
 

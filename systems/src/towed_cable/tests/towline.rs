@@ -2,6 +2,10 @@
 
 use std::f64::consts::PI;
 
+use crate::environment::atmosphere::Atmosphere;
+use crate::environment::wind::{Wind, WindSource};
+use crate::environment::wind_profile::WindProfile;
+
 use super::super::{Conditions, Line, StaticShape, TowedBody, TowedCable};
 use super::{GRAVITY_M_S2, assert_near};
 
@@ -193,4 +197,52 @@ fn it_works_where_the_line_lies_nearly_flat() {
         let reach = shape.body.x_m.hypot(shape.depth_m);
         assert!((7000.0..9730.0).contains(&reach), "{reach}");
     }
+}
+
+/// Short and long lines with light and heavy bodies, in the reference atmosphere and the zonal wind
+/// of Venus, whose top drifts a little faster or slower than its air.
+#[test]
+fn it_finds_a_shape_wherever_a_balloon_may_tow() {
+    let air = Atmosphere::vira();
+    let profile = WindSource::Profile(WindProfile::venus_zonal());
+    let wind = Wind::new(vec![profile]);
+    let mut worst = 0.0_f64;
+    for length_m in [100.0, 1000.0, 5000.0, 15_000.0] {
+        for top_altitude_m in [46_000.0, 54_000.0, 60_000.0] {
+            for mass_kg in [0.1, 4.0, 100.0] {
+                for drift_m_s in [-10.0, 0.0, 10.0] {
+                    let speed = wind.velocity_m_s(top_altitude_m).unwrap().x + drift_m_s;
+                    let surroundings = |z: f64| {
+                        Some(Conditions {
+                            density_kg_m3: air.density_kg_m3(z).ok()?,
+                            wind_m_s: wind.velocity_m_s(z).ok()?.x - speed,
+                            gravity_m_s2: GRAVITY_M_S2,
+                        })
+                    };
+                    let cable = TowedCable {
+                        line: Line {
+                            length_m,
+                            mass_per_length_kg_m: 1e-3,
+                            diameter_m: 1e-3,
+                            axial_stiffness_n: 5e4,
+                            normal_drag: 1.2,
+                            tangential_drag: 0.03,
+                        },
+                        body: TowedBody {
+                            mass_kg,
+                            drag_area_m2: 0.02,
+                            displaced_volume_m3: 0.0,
+                        },
+                        top_altitude_m,
+                    };
+                    let shape = cable
+                        .solve(&surroundings, &[])
+                        .unwrap_or_else(|error| panic!("{cable:?}: {error}"));
+                    worst = worst.max((shape.top.z_m - top_altitude_m).abs() / length_m);
+                }
+            }
+        }
+    }
+    println!("the top comes out where it is held within {worst:e} of the length");
+    assert!(worst < 1e-10, "{worst:e}");
 }
