@@ -8,12 +8,13 @@ use super::{LineShape, TowingSettings, WindResult};
 const HEAD: &str = "\
 Towing a probe of 4 kg on 9.7 km and 2.3 kg of line below a held balloon (paper, sec. 5.1).
 
-Figure 15 of the paper lays a dynamic simulation beside a static model of the line; the text finds
-them close, puts the differences down to the approaches, and calls the dynamic one more exact. It
-leaves out the diameter of the line, its stiffness, the shear and the atmosphere, so its curves
-cannot be had again; the values here are those that `scenes/paper/towing_9700m.ron` states. With
-the same forces the two must agree: at rest the discrete line differs from the continuous one by
-its segments alone, and the flight ends in the discrete rest.
+Figure 15 of the paper lays a dynamic simulation beside a static model of the line; the text calls
+the result satisfying, puts the differences down to the approaches, and calls the dynamic one more
+exact for its inertia, elasticity and distributed loads. The paper leaves out the diameter of the
+line, its stiffness, the shear and the atmosphere, so its curves cannot be had again; the values
+here are those that `scenes/paper/towing_9700m.ron` states. With the same forces the two must
+agree: at rest the discrete line differs from the continuous one by its segments alone, and the
+flight ends in the discrete rest.
 ";
 
 const WIDE_HEADER: &str = "wind_m_s,nodes,\
