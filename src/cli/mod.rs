@@ -3,6 +3,7 @@
 //! Exit codes: 0 done, 2 refused (nothing written), 3 stopped (what was recorded is kept).
 
 mod check;
+mod reproduce;
 mod run;
 
 use std::io::Write;
@@ -31,6 +32,8 @@ enum Command {
     Run(RunArguments),
     /// Check scenes and print what they contain, without running them.
     Check(CheckArguments),
+    /// Compute cases of the paper anew and set them beside what it shows.
+    Reproduce(ReproduceArguments),
 }
 
 /// What every command that reads a scene takes.
@@ -84,6 +87,30 @@ struct CheckArguments {
     overrides: SceneArguments,
 }
 
+#[derive(Args)]
+struct ReproduceArguments {
+    /// The case; all of them unless given.
+    case: Option<String>,
+    /// List the cases and do nothing else.
+    #[arg(long)]
+    list: bool,
+    /// Folder for the tables; `runs/reproduce` unless given.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Write into a folder that exists.
+    #[arg(long)]
+    force: bool,
+    /// Number of nodes of each tether; the case's own unless given.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    nodes: Option<u32>,
+    /// Simulated time at which runs end, s; the case's own unless given.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    until: Option<f64>,
+    /// Print nothing but errors.
+    #[arg(long)]
+    quiet: bool,
+}
+
 impl SceneArguments {
     /// All overrides as `PATH=RON`, those of `--set` first.
     fn as_overrides(&self) -> Vec<String> {
@@ -122,5 +149,6 @@ pub fn main(plugins: &[&dyn Plugin]) -> ExitCode {
     match arguments.command {
         Command::Run(arguments) => run::run(&simulator, &arguments),
         Command::Check(arguments) => check::check(&simulator, &arguments),
+        Command::Reproduce(arguments) => reproduce::reproduce(&simulator, &arguments),
     }
 }

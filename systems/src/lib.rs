@@ -10,3 +10,4 @@ pub mod instruments;
 pub mod integration;
 pub mod linearised_motion;
 pub mod nonlinear_solver;
+pub mod towed_cable;
