@@ -34,6 +34,8 @@ pub(super) fn solve(dim: usize, columns: usize, lu: &[f64], pivots: &[usize], b:
     match (dim, columns) {
         (3, 3) => solve_kernel(3, 3, lu, pivots, b),
         (3, 1) => solve_kernel(3, 1, lu, pivots, b),
+        (6, 6) => solve_kernel(6, 6, lu, pivots, b),
+        (6, 1) => solve_kernel(6, 1, lu, pivots, b),
         _ => solve_kernel(dim, columns, lu, pivots, b),
     }
 }
@@ -51,6 +53,8 @@ pub(super) fn subtract_product(
         (3, 3, 6) => subtract_kernel((3, 3, 6), a, b, c),
         (6, 3, 6) => subtract_kernel((6, 3, 6), a, b, c),
         (3, 3, 1) => subtract_kernel((3, 3, 1), a, b, c),
+        (6, 6, 6) => subtract_kernel((6, 6, 6), a, b, c),
+        (6, 6, 1) => subtract_kernel((6, 6, 1), a, b, c),
         _ => subtract_kernel((m, k, n), a, b, c),
     }
 }
