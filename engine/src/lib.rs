@@ -15,5 +15,6 @@ pub mod simulation;
 pub mod stable_step;
 mod stopping;
 mod summarise;
-
+pub mod trim;
+pub mod trimmed_scene;
 pub mod world;

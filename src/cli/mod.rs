@@ -4,6 +4,7 @@
 
 mod check;
 mod run;
+mod trim;
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -31,6 +32,8 @@ enum Command {
     Run(RunArguments),
     /// Check scenes and print what they contain, without running them.
     Check(CheckArguments),
+    /// Find the steady state of a scene in its wind, and write a scene that starts there.
+    Trim(TrimArguments),
 }
 
 /// What every command that reads a scene takes.
@@ -84,6 +87,23 @@ struct CheckArguments {
     overrides: SceneArguments,
 }
 
+#[derive(Args)]
+struct TrimArguments {
+    /// The scene, a RON file.
+    scene: PathBuf,
+    #[command(flatten)]
+    overrides: SceneArguments,
+    /// File for the scene that starts in its steady state.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Overwrite a file that exists.
+    #[arg(long)]
+    force: bool,
+    /// Print nothing but errors and warnings.
+    #[arg(long)]
+    quiet: bool,
+}
+
 impl SceneArguments {
     /// All overrides as `PATH=RON`, those of `--set` first.
     fn as_overrides(&self) -> Vec<String> {
@@ -122,5 +142,6 @@ pub fn main(plugins: &[&dyn Plugin]) -> ExitCode {
     match arguments.command {
         Command::Run(arguments) => run::run(&simulator, &arguments),
         Command::Check(arguments) => check::check(&simulator, &arguments),
+        Command::Trim(arguments) => trim::trim(&simulator, &arguments),
     }
 }

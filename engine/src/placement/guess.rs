@@ -39,7 +39,8 @@ pub(super) fn place_bodies(
         let Some(&first) = waiting.first() else {
             return Ok(floating);
         };
-        let balloon = floating_balloon(world, scene, first)?;
+        let name = world.get::<EntityName>(first).map_or("", |name| &name.0);
+        let balloon = floating_balloon(world, scene, name)?;
         let altitude_m = floating_altitude(world, scene, balloon)?;
         if let Some(mut position) = world.get_mut::<Position>(balloon) {
             position.0 = DVec3::new(0.0, 0.0, altitude_m);
@@ -47,6 +48,12 @@ pub(super) fn place_bodies(
         waiting.retain(|body| *body != balloon);
         floating.push(balloon);
     }
+}
+
+/// Hangs all of `bodies` anew from what stands and is not among them.
+pub(super) fn hang_anew(world: &mut World, bodies: &[Entity]) {
+    let lines = lines(world);
+    hang(world, &lines, bodies, &mut bodies.to_vec());
 }
 
 fn lines(world: &mut World) -> Vec<Line> {
@@ -225,9 +232,12 @@ fn net_weight_n(world: &World, body: Entity, altitude_m: f64) -> f64 {
     environment.gravity.acceleration_m_s2(altitude_m) * (mass - density * volume)
 }
 
-/// The balloon that carries the system of `body`.
-fn floating_balloon(world: &World, scene: &Scene, body: Entity) -> Result<Entity, SetupError> {
-    let name = world.get::<EntityName>(body).map_or("", |name| &name.0);
+/// The balloon that carries the system of the body called `name`.
+pub(super) fn floating_balloon(
+    world: &World,
+    scene: &Scene,
+    name: &str,
+) -> Result<Entity, SetupError> {
     let together = tethered_together(scene, name);
     let balloons: Vec<Entity> = together
         .iter()

@@ -1,0 +1,253 @@
+//! The steady state of a scene in its own wind: every system that tethers join at rest against its
+//! anchors, or drifting as a whole.
+
+use aerobot_components::body::Moving;
+use aerobot_systems::clock::Clock;
+use aerobot_systems::environment::EnvironmentModel;
+use aerobot_systems::environment::wind::Wind;
+use bevy_ecs::world::World;
+use glam::DVec3;
+
+use super::drift::{Drift, FreeSystem, set_motion};
+use super::equilibrium::solve_shape;
+use super::snapshot::Snapshot;
+use super::stability::{self, Instability};
+use super::tethered_system::{self, TetheredSystem, anchor_velocity_m_s};
+use super::{Unplaced, guess, nodes, take_as_origin};
+use crate::evaluation::Evaluation;
+use crate::scene::{Scene, SetupError};
+
+/// A wind that cannot be brought up in parts as small as this has no rest.
+const SMALLEST_PART_OF_WIND: f64 = 1e-3;
+
+/// A system in its steady state.
+pub(crate) struct SteadySystem {
+    /// What belongs to it.
+    pub(crate) system: TetheredSystem,
+    /// The velocity that all of it shares, m/s.
+    pub(crate) velocity_m_s: DVec3,
+    /// A motion along which it would leave that state by itself.
+    pub(crate) instability: Option<Instability>,
+    /// Change of the vertical force with altitude, N/m, of a system whose altitude was found.
+    pub(crate) vertical_slope_n_m: Option<f64>,
+}
+
+/// Brings every system of the scene to its steady state in the wind of the present, from where it
+/// stands.
+///
+/// The wind, and the speed of anchors, are brought up in parts: a part that Newton's method cannot follow
+/// is halved.
+///
+/// # Errors
+/// Which entity finds no steady state, and why; then everything is as it was.
+pub(crate) fn settle(
+    world: &mut World,
+    evaluation: &mut Evaluation,
+    scene: &Scene,
+) -> Result<Vec<SteadySystem>, SetupError> {
+    let before = Snapshot::of(world);
+    let mut settled = Vec::new();
+    let mut failed = None;
+    for system in tethered_system::find(world, scene) {
+        match (Ascent {
+            wind: world.resource::<EnvironmentModel>().wind.clone(),
+            world,
+            evaluation,
+            system: &system,
+        })
+        .settle()
+        {
+            Ok(found) => settled.push(SteadySystem {
+                system: system.clone(),
+                ..found
+            }),
+            Err(error) => {
+                failed = Some(error);
+                break;
+            }
+        }
+    }
+    match failed {
+        Some(error) => {
+            before.restore(world);
+            // What was there could be evaluated when it was built.
+            let _ = evaluation.run(world);
+            Err(error)
+        }
+        None => {
+            take_as_origin(world);
+            Ok(settled)
+        }
+    }
+}
+
+/// One system on its way into the wind.
+struct Ascent<'a> {
+    wind: Wind,
+    world: &'a mut World,
+    evaluation: &'a mut Evaluation,
+    system: &'a TetheredSystem,
+}
+
+/// A part of the way that was reached.
+struct Reached {
+    part: f64,
+    drift: Option<Drift>,
+    vertical_slope_n_m: Option<f64>,
+}
+
+impl Ascent<'_> {
+    /// From where it stands; failing that, from where it would hang plumb.
+    fn settle(&mut self) -> Result<SteadySystem, SetupError> {
+        let anchored_m_s = anchor_velocity_m_s(self.world, self.system)?;
+        let unplaced = Unplaced {
+            bodies: self.system.bodies.clone(),
+            floating: self.system.reference.into_iter().collect(),
+            tethers: Some(self.system.tethers.clone()),
+        };
+        let start = Snapshot::of(self.world);
+        let mut outcome = self.bring_up(&unplaced, anchored_m_s);
+        if outcome.is_err() && !self.system.tethers.is_empty() {
+            start.restore(self.world);
+            self.hang_plumb();
+            outcome = self.bring_up(&unplaced, anchored_m_s).or(outcome);
+        }
+        let reached = outcome?;
+        let velocity_m_s = match (reached.drift, self.system.reference) {
+            (Some(drift), Some(_)) => self.free_system(&unplaced)?.velocity_m_s(drift)?,
+            _ => anchored_m_s,
+        };
+        Ok(SteadySystem {
+            system: TetheredSystem::default(),
+            velocity_m_s,
+            instability: stability::find(self.world, self.evaluation, &unplaced),
+            vertical_slope_n_m: reached.vertical_slope_n_m,
+        })
+    }
+
+    /// A guess that forgets the poses of the scene, but for that of a floating reference body.
+    fn hang_plumb(&mut self) {
+        let bodies = self.system.bodies.iter().copied();
+        let hanging: Vec<_> = bodies
+            .filter(|body| Some(*body) != self.system.reference)
+            .collect();
+        guess::hang_anew(self.world, &hanging);
+        for tether in &self.system.tethers {
+            nodes::place_sagging(self.world, *tether);
+        }
+    }
+
+    fn bring_up(
+        &mut self,
+        unplaced: &Unplaced,
+        anchored_m_s: DVec3,
+    ) -> Result<Reached, SetupError> {
+        let mut reached = Reached {
+            part: 0.0,
+            drift: None,
+            vertical_slope_n_m: None,
+        };
+        let mut part = 1.0_f64;
+        // What floats nowhere does so in any wind.
+        if self.system.reference.is_some() {
+            let mut free = self.free_system(unplaced)?;
+            let begin = free.begin()?;
+            free.velocity_m_s(begin)?;
+        }
+        while reached.part < 1.0 {
+            let target = (reached.part + part).min(1.0);
+            let before = Snapshot::of(self.world);
+            match self.at_part(unplaced, anchored_m_s, target, &reached) {
+                Ok(now) => {
+                    reached = now;
+                    part *= 2.0;
+                }
+                Err(error) if part < SMALLEST_PART_OF_WIND => return Err(error),
+                Err(_) => {
+                    before.restore(self.world);
+                    part *= 0.5;
+                }
+            }
+        }
+        Ok(reached)
+    }
+
+    /// The steady state in a part of the wind, from that in the part reached before.
+    fn at_part(
+        &mut self,
+        unplaced: &Unplaced,
+        anchored_m_s: DVec3,
+        part: f64,
+        reached: &Reached,
+    ) -> Result<Reached, SetupError> {
+        self.world.resource_mut::<EnvironmentModel>().wind = self.wind.scaled(part);
+        let paths = self.slow_down_anchors(part);
+        let result = if self.system.reference.is_some() {
+            self.drift_from(unplaced, part, reached)
+        } else {
+            set_motion(self.world, self.system, part * anchored_m_s);
+            solve_shape(self.world, self.evaluation, unplaced).map(|()| Reached {
+                part,
+                drift: None,
+                vertical_slope_n_m: None,
+            })
+        };
+        self.world.resource_mut::<EnvironmentModel>().wind = self.wind.clone();
+        for (anchor, path) in paths {
+            self.world.entity_mut(anchor).insert(path);
+        }
+        result
+    }
+
+    fn drift_from(
+        &mut self,
+        unplaced: &Unplaced,
+        part: f64,
+        reached: &Reached,
+    ) -> Result<Reached, SetupError> {
+        let mut free = self.free_system(unplaced)?;
+        let mut begin = free.begin()?;
+        if let Some(drift) = reached.drift {
+            // All velocities of a steady state grow together while its shape stays.
+            begin = Drift {
+                against_air_m_s: drift.against_air_m_s * (part / reached.part),
+                altitude_m: drift.altitude_m,
+            };
+        }
+        let (drift, vertical_slope_n_m) = free.solve(begin)?;
+        Ok(Reached {
+            part,
+            drift: Some(drift),
+            vertical_slope_n_m,
+        })
+    }
+
+    fn free_system<'b>(&'b mut self, unplaced: &'b Unplaced) -> Result<FreeSystem<'b>, SetupError> {
+        let Some(reference) = self.system.reference else {
+            return Err(SetupError::new("entities", "nothing of it is free", ""));
+        };
+        Ok(FreeSystem {
+            world: self.world,
+            evaluation: self.evaluation,
+            system: self.system,
+            unplaced,
+            reference,
+        })
+    }
+
+    /// Takes a part of the speed of moving anchors, with their places as they are; gives their own paths.
+    fn slow_down_anchors(&mut self, part: f64) -> Vec<(bevy_ecs::entity::Entity, Moving)> {
+        let time_s = self.world.resource::<Clock>().time_s;
+        let mut paths = Vec::new();
+        for anchor in &self.system.anchors {
+            let Some(mut path) = self.world.get_mut::<Moving>(*anchor) else {
+                continue;
+            };
+            paths.push((*anchor, path.clone()));
+            let velocity_m_s = path.velocity_m_s;
+            path.position_m += (1.0 - part) * time_s * velocity_m_s;
+            path.velocity_m_s = part * velocity_m_s;
+        }
+        paths
+    }
+}

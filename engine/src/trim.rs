@@ -1,0 +1,401 @@
+//! Static equilibrium of a scene in its own wind: what it looks like, and bringing a simulation there.
+
+use aerobot_components::body::Anchor;
+use aerobot_components::segment::{SegmentGeometry, Tension};
+use aerobot_components::state::{
+    Acceleration, AngularAcceleration, Attitude, Force, Inertia, Position, StateIndex, Velocity,
+};
+use aerobot_components::tether::{Tether, TetherNode, TetherParts};
+use aerobot_systems::clock::Clock;
+use aerobot_systems::environment::EnvironmentModel;
+use aerobot_systems::fault::Fault;
+use aerobot_systems::instruments::attitude::{heading_rad, tilt_rad};
+use bevy_ecs::entity::Entity;
+use bevy_ecs::world::World;
+use glam::{DQuat, DVec3};
+
+use crate::evaluation::{Integration, with_integration};
+use crate::placement::{self, SteadySystem};
+use crate::scene::{Scene, SceneError, SetupError};
+use crate::simulation::Simulation;
+use crate::stopping::owner_name;
+use crate::world::{EntityName, SceneEntities};
+
+/// An acceleration (m/s^2, rad/s^2) that is left beyond this is worth a warning.
+const SMALL_ACCELERATION: f64 = 1e-6;
+
+/// The steady state of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trim {
+    /// What tethers join, each with its own velocity, in the order of the scene.
+    pub systems: Vec<TrimmedSystem>,
+    /// Bodies and anchors, in the order of the scene.
+    pub bodies: Vec<TrimmedBody>,
+    /// Tethers, in the order of the scene.
+    pub tethers: Vec<TrimmedTether>,
+    /// What is left of the forces.
+    pub residual: Residual,
+    /// What was decided on the way, as sentences.
+    pub notes: Vec<String>,
+    /// What makes the state doubtful, as sentences.
+    pub warnings: Vec<String>,
+}
+
+/// Bodies, tethers and anchors that belong together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrimmedSystem {
+    /// Names of its anchors; none if it drifts.
+    pub anchors: Vec<String>,
+    /// Names of its bodies.
+    pub bodies: Vec<String>,
+    /// Names of its tethers.
+    pub tethers: Vec<String>,
+    /// The body whose horizontal place was held, if it drifts.
+    pub reference: Option<String>,
+    /// Velocity that all of it shares, inertial frame, m/s.
+    pub velocity_m_s: DVec3,
+    /// The wind at the reference body, m/s; zero where anchors hold the system.
+    pub wind_at_reference_m_s: DVec3,
+}
+
+/// A body or an anchor in the steady state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrimmedBody {
+    /// Its name.
+    pub name: String,
+    /// Whether it is an anchor.
+    pub is_anchor: bool,
+    /// Whether it has an attitude of its own: a point has none that matters.
+    pub turns: bool,
+    /// Position of the centre of mass, inertial frame, m.
+    pub position_m: DVec3,
+    /// Velocity, inertial frame, m/s.
+    pub velocity_m_s: DVec3,
+    /// Attitude, body to inertial.
+    pub attitude: DQuat,
+    /// Angle between its z axis and the vertical, rad.
+    pub tilt_rad: f64,
+    /// Angle from the inertial x axis to the horizontal part of its x axis, towards y, rad.
+    pub heading_rad: f64,
+}
+
+/// A tether in the steady state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrimmedTether {
+    /// Its name.
+    pub name: String,
+    /// The end from which segments count.
+    pub from: TrimmedEnd,
+    /// The other end.
+    pub to: TrimmedEnd,
+    /// Largest tension of a segment, N.
+    pub largest_tension_n: f64,
+    /// The segment that carries it, from 1 at `from`.
+    pub largest_segment: usize,
+    /// Velocity of its nodes, inertial frame, m/s.
+    pub velocity_m_s: DVec3,
+    /// Positions of its interior nodes from `from` to `to`, inertial frame, m.
+    pub node_positions_m: Vec<DVec3>,
+}
+
+/// One end of a tether in the steady state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrimmedEnd {
+    /// Name of what carries it.
+    pub carrier: String,
+    /// Where it is, inertial frame, m.
+    pub position_m: DVec3,
+    /// Force on the carrier, with the weight and drag of the half segment that stands there: what the
+    /// channels `tension_from_n` and `tension_to_n` record, and the end of a continuous cable carries, N.
+    pub force_n: f64,
+    /// Tension of the end segment itself, N.
+    pub tension_n: f64,
+    /// Angle between the line of that force and the vertical, rad, in [0, pi/2]; of the end segment where
+    /// there is no force.
+    pub angle_from_vertical_rad: f64,
+}
+
+/// The largest things that remain unbalanced on bodies and nodes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Residual {
+    /// Largest force, N.
+    pub force_n: f64,
+    /// The body or node where it remains.
+    pub force_at: String,
+    /// Largest acceleration, m/s^2.
+    pub acceleration_m_s2: f64,
+    /// The body or node that has it.
+    pub acceleration_at: String,
+    /// Largest angular acceleration, rad/s^2.
+    pub angular_acceleration_rad_s2: f64,
+    /// The body that has it.
+    pub angular_acceleration_at: String,
+}
+
+impl Simulation {
+    /// Brings the simulation to its steady state in the scene's own wind, as it stands at the time of
+    /// the simulation, from where it is: a system that anchors hold comes to rest against them, one that
+    /// nothing holds drifts as a whole, each at its own velocity. A run from there moves nothing against
+    /// its system until the wind changes.
+    ///
+    /// What nothing restores stays: heading, and the horizontal place of a drifting balloon (of its first
+    /// body, if it has no balloon). The altitude of a drifting system follows from the density of the air;
+    /// where that is uniform, the altitude stays too.
+    ///
+    /// # Errors
+    /// Which entity finds no steady state, and why, rendered; the simulation is then as it was.
+    pub fn trim(&mut self, scene: &Scene) -> Result<Trim, SceneError> {
+        with_integration(&mut self.world, |world, integration| {
+            let Integration {
+                evaluation,
+                trajectory,
+                ..
+            } = integration;
+            let systems = placement::settle(world, evaluation, scene).map_err(for_a_trim)?;
+            evaluation.state.gather(world, &mut trajectory.state);
+            trajectory.rates_are_current = false;
+            evaluation
+                .run(world)
+                .map_err(|fault| not_evaluated(world, &fault))?;
+            Ok(report(world, &systems))
+        })
+        .unwrap_or_else(|| Err(SetupError::new("", "the simulation is busy", "")))
+        .map_err(|error| scene.refuse(error))
+    }
+}
+
+/// What failed in the search is no failure of the scene's start: its remedies are others.
+fn for_a_trim(mut error: SetupError) -> SetupError {
+    for violation in &mut error.0 {
+        let of_a_start = violation
+            .help
+            .as_ref()
+            .is_some_and(|help| help.contains("a `Pose`"));
+        if of_a_start {
+            violation.help = Some(
+                "a steady state may not exist in this wind; if it does, poses near to it, or \
+                 `--set environment.wind=[]` to begin with, help to find it"
+                    .to_owned(),
+            );
+        }
+    }
+    error
+}
+
+fn not_evaluated(world: &World, fault: &Fault) -> SetupError {
+    let name = fault.entity.and_then(|entity| owner_name(world, entity));
+    let path = name
+        .as_ref()
+        .map_or_else(String::new, |name| format!("entities.{name}"));
+    SetupError::new(path, fault.message.clone(), "")
+}
+
+fn report(world: &mut World, systems: &[SteadySystem]) -> Trim {
+    let residual = residual(world);
+    let entities = world.resource::<SceneEntities>().in_order();
+    Trim {
+        systems: systems.iter().map(|found| system(world, found)).collect(),
+        bodies: entities.iter().filter_map(|id| body(world, *id)).collect(),
+        tethers: entities
+            .iter()
+            .filter_map(|id| tether(world, *id))
+            .collect(),
+        notes: notes(world),
+        warnings: warnings(world, systems, &residual),
+        residual,
+    }
+}
+
+fn name(world: &World, entity: Entity) -> String {
+    world
+        .get::<EntityName>(entity)
+        .map_or_else(String::new, |name| name.0.to_string())
+}
+
+fn system(world: &World, found: &SteadySystem) -> TrimmedSystem {
+    let names = |entities: &[Entity]| entities.iter().map(|id| name(world, *id)).collect();
+    let system = &found.system;
+    let altitude_m = system
+        .reference
+        .and_then(|reference| world.get::<Position>(reference))
+        .map(|position| position.0.z);
+    let wind = &world.resource::<EnvironmentModel>().wind;
+    TrimmedSystem {
+        anchors: names(&system.anchors),
+        bodies: names(&system.bodies),
+        tethers: names(&system.tethers),
+        reference: system.reference.map(|reference| name(world, reference)),
+        velocity_m_s: found.velocity_m_s,
+        wind_at_reference_m_s: altitude_m
+            .and_then(|altitude_m| wind.velocity_m_s(altitude_m).ok())
+            .unwrap_or_default(),
+    }
+}
+
+fn body(world: &World, entity: Entity) -> Option<TrimmedBody> {
+    let attitude = world.get::<Attitude>(entity)?.0;
+    Some(TrimmedBody {
+        name: name(world, entity),
+        is_anchor: world.get::<Anchor>(entity).is_some(),
+        turns: world.get::<Inertia>(entity).is_some(),
+        position_m: world.get::<Position>(entity)?.0,
+        velocity_m_s: world.get::<Velocity>(entity)?.0,
+        attitude,
+        tilt_rad: tilt_rad(attitude),
+        heading_rad: heading_rad(attitude),
+    })
+}
+
+fn tether(world: &World, entity: Entity) -> Option<TrimmedTether> {
+    let tether = world.get::<Tether>(entity)?;
+    let parts = world.get::<TetherParts>(entity)?;
+    let tensions = parts.segments.iter().enumerate().filter_map(|(index, id)| {
+        let tension = world.get::<Tension>(*id)?;
+        Some((index + 1, tension.0))
+    });
+    let (largest_segment, largest_tension_n) = tensions
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .unwrap_or_default();
+    let nodes = || {
+        let points = parts.points.iter().copied();
+        points.filter(|point| world.get::<TetherNode>(*point).is_some())
+    };
+    let first = nodes().next().or(parts.points.first().copied())?;
+    Some(TrimmedTether {
+        name: name(world, entity),
+        from: end(
+            world,
+            &tether.from.0,
+            parts.points.first(),
+            parts.segments.first(),
+        )?,
+        to: end(
+            world,
+            &tether.to.0,
+            parts.points.last(),
+            parts.segments.last(),
+        )?,
+        largest_tension_n,
+        largest_segment,
+        velocity_m_s: world.get::<Velocity>(first)?.0,
+        node_positions_m: nodes()
+            .filter_map(|node| Some(world.get::<Position>(node)?.0))
+            .collect(),
+    })
+}
+
+fn end(
+    world: &World,
+    carrier: &str,
+    point: Option<&Entity>,
+    segment: Option<&Entity>,
+) -> Option<TrimmedEnd> {
+    let (point, segment) = (*point?, *segment?);
+    let force = world.get::<Force>(point)?.0;
+    let line = if force.length() > 0.0 {
+        force
+    } else {
+        world.get::<SegmentGeometry>(segment)?.direction
+    };
+    Some(TrimmedEnd {
+        carrier: carrier.to_owned(),
+        position_m: world.get::<Position>(point)?.0,
+        force_n: force.length(),
+        tension_n: world.get::<Tension>(segment)?.0,
+        angle_from_vertical_rad: libm::atan2(libm::hypot(line.x, line.y), line.z.abs()),
+    })
+}
+
+/// The largest of what is left, over everything that the run would integrate.
+fn residual(world: &mut World) -> Residual {
+    let mut residual = Residual::default();
+    let mut parts = world.query_filtered::<(
+        &EntityName,
+        &Force,
+        &Acceleration,
+        Option<&AngularAcceleration>,
+    ), bevy_ecs::query::With<StateIndex>>();
+    for (name, force, linear, angular) in parts.iter(world) {
+        let raise = |largest: &mut f64, at: &mut String, value: f64| {
+            if value >= *largest {
+                *largest = value;
+                *at = name.0.to_string();
+            }
+        };
+        let Residual {
+            force_n,
+            force_at,
+            acceleration_m_s2,
+            acceleration_at,
+            angular_acceleration_rad_s2,
+            angular_acceleration_at,
+        } = &mut residual;
+        raise(force_n, force_at, force.0.length());
+        raise(acceleration_m_s2, acceleration_at, linear.0.length());
+        let angular = angular.map_or(0.0, |angular| angular.0.length());
+        raise(
+            angular_acceleration_rad_s2,
+            angular_acceleration_at,
+            angular,
+        );
+    }
+    residual
+}
+
+fn notes(world: &World) -> Vec<String> {
+    let wind = &world.resource::<EnvironmentModel>().wind;
+    let edges = wind.edges_s();
+    let mut notes = Vec::new();
+    if !edges.is_empty() {
+        notes.push(format!(
+            "the wind changes with time (first at {} s): this is the steady state in the wind as it \
+             stands at {} s",
+            edges[0],
+            world.resource::<Clock>().time_s
+        ));
+    }
+    notes
+}
+
+fn warnings(world: &World, systems: &[SteadySystem], residual: &Residual) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for found in systems {
+        if let Some(unstable) = found.instability {
+            warnings.push(format!(
+                "`{}`: the equilibrium is unstable: pushed out of it, it leaves by a factor e in \
+                 {:.3} s where nothing damps",
+                name(world, unstable.entity),
+                unstable.growth_time_s
+            ));
+        }
+        if let (Some(slope), Some(reference)) = (found.vertical_slope_n_m, found.system.reference)
+            && slope >= 0.0
+        {
+            warnings.push(format!(
+                "`{}`: nothing brings it back to its altitude: {slope:.3e} N push it away for each \
+                 metre",
+                name(world, reference)
+            ));
+        }
+    }
+    for (value, at, unit) in [
+        (
+            residual.acceleration_m_s2,
+            &residual.acceleration_at,
+            "m/s^2",
+        ),
+        (
+            residual.angular_acceleration_rad_s2,
+            &residual.angular_acceleration_at,
+            "rad/s^2",
+        ),
+    ] {
+        if value > SMALL_ACCELERATION {
+            warnings.push(format!(
+                "`{at}` is left with an acceleration of {value:.3e} {unit}: light parts on stiff \
+                 segments show the round-off of positions, and a heading that is not balanced turns"
+            ));
+        }
+    }
+    warnings
+}
