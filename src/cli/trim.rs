@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use aerobot_engine::plugin::Simulator;
-use aerobot_engine::trim::{Trim, TrimmedBody, TrimmedEnd, TrimmedSystem, TrimmedTether};
+use aerobot_engine::trim::{Residual, Trim, TrimmedBody, TrimmedEnd, TrimmedSystem, TrimmedTether};
 use aerobot_engine::trimmed_scene::{check_target, write_trimmed_scene};
 use glam::DVec3;
 
@@ -65,19 +65,26 @@ fn describe(trim: &Trim) -> String {
             }
         }
     }
-    let left = &trim.residual;
-    if !left.force_at.is_empty() {
-        text.push_str(&format!(
-            "left over: {:.1e} N on `{}`, {:.1e} m/s^2 of `{}`, {:.1e} rad/s^2 of `{}`\n",
-            left.force_n,
-            left.force_at,
-            left.acceleration_m_s2,
-            left.acceleration_at,
-            left.angular_acceleration_rad_s2,
-            left.angular_acceleration_at
-        ));
-    }
+    text.push_str(&describe_residual(&trim.residual));
     text
+}
+
+fn describe_residual(left: &Residual) -> String {
+    if left.force_at.is_empty() {
+        return String::new();
+    }
+    let turning = if left.angular_acceleration_at.is_empty() {
+        String::new()
+    } else {
+        format!(
+            ", {:.1e} rad/s^2 of `{}`",
+            left.angular_acceleration_rad_s2, left.angular_acceleration_at
+        )
+    };
+    format!(
+        "left over: {:.1e} N on `{}`, {:.1e} m/s^2 of `{}`{turning} (round-off of positions: {:.1e} N)\n",
+        left.force_n, left.force_at, left.acceleration_m_s2, left.acceleration_at, left.round_off_n
+    )
 }
 
 fn has(system: &TrimmedSystem, body: &TrimmedBody) -> bool {
@@ -99,7 +106,7 @@ fn describe_system(system: &TrimmedSystem) -> String {
                 format!("held by {anchors}\n")
             } else {
                 let velocity = vector(system.velocity_m_s);
-                format!("held by {anchors}, which moves at {velocity} m/s\n")
+                format!("held by {anchors}, moving at {velocity} m/s\n")
             }
         }
     }
@@ -111,9 +118,9 @@ fn describe_body(body: &TrimmedBody) -> String {
         text.push_str(", held");
     } else if body.turns {
         text.push_str(&format!(
-            ", tilt {:.4} deg, heading {:.4} deg",
-            body.tilt_rad.to_degrees(),
-            body.heading_rad.to_degrees()
+            ", tilt {} deg, heading {} deg",
+            fixed(body.tilt_rad.to_degrees(), 4),
+            fixed(body.heading_rad.to_degrees(), 4)
         ));
     }
     text.push('\n');
@@ -148,13 +155,16 @@ fn describe_end(place: &str, end: &TrimmedEnd) -> String {
 }
 
 fn vector(value: DVec3) -> String {
-    // A zero that came out negative reads as a difference where there is none.
-    let [x, y, z] = value.to_array().map(|part| {
-        let text = format!("{part:.6}");
-        match text.strip_prefix('-') {
-            Some(digits) if digits.chars().all(|c| c == '0' || c == '.') => digits.to_owned(),
-            _ => text,
-        }
-    });
+    let [x, y, z] = value.to_array().map(|part| fixed(part, 6));
     format!("({x}, {y}, {z})")
+}
+
+/// A number with so many decimals; a zero that came out negative reads as a difference where there is
+/// none.
+fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(digits) if digits.chars().all(|c| c == '0' || c == '.') => digits.to_owned(),
+        _ => text,
+    }
 }

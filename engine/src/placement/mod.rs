@@ -4,6 +4,8 @@
 //! Newton's method on the same forces that the run uses, with the air still and everything at rest.
 //! A system that nothing fixes floats: its balloon's altitude is where the vertical force vanishes,
 //! its horizontal place is x = y = 0.
+//!
+//! From there, or from any other start, [`settle`] finds the steady state in the scene's own wind.
 
 mod buoyant_altitude;
 mod drift;
@@ -131,6 +133,11 @@ fn place_given_nodes(world: &mut World) {
             }
         }
     }
+}
+
+/// Force in N that the round-off of positions makes of the stiffest segment.
+pub(crate) fn position_noise_n(world: &mut World) -> f64 {
+    equilibrium::Scales::of(world).position_noise_n
 }
 
 /// The placed state is the origin of displacements and the centre of the charts.

@@ -46,44 +46,33 @@ pub(crate) fn settle(
     scene: &Scene,
 ) -> Result<Vec<SteadySystem>, SetupError> {
     let before = Snapshot::of(world);
-    let mut settled = Vec::new();
-    let mut failed = None;
-    for system in tethered_system::find(world, scene) {
-        match (Ascent {
-            wind: world.resource::<EnvironmentModel>().wind.clone(),
-            world,
-            evaluation,
-            system: &system,
+    let wind = world.resource::<EnvironmentModel>().wind.clone();
+    let systems = tethered_system::find(world, scene);
+    let settled: Result<Vec<_>, SetupError> = systems
+        .into_iter()
+        .map(|system| {
+            let mut ascent = Ascent {
+                wind: &wind,
+                world,
+                evaluation,
+                system: &system,
+            };
+            ascent.settle()
         })
-        .settle()
-        {
-            Ok(found) => settled.push(SteadySystem {
-                system: system.clone(),
-                ..found
-            }),
-            Err(error) => {
-                failed = Some(error);
-                break;
-            }
-        }
+        .collect();
+    if settled.is_ok() {
+        take_as_origin(world);
+    } else {
+        before.restore(world);
+        // What was there could be evaluated when it was built.
+        let _ = evaluation.run(world);
     }
-    match failed {
-        Some(error) => {
-            before.restore(world);
-            // What was there could be evaluated when it was built.
-            let _ = evaluation.run(world);
-            Err(error)
-        }
-        None => {
-            take_as_origin(world);
-            Ok(settled)
-        }
-    }
+    settled
 }
 
 /// One system on its way into the wind.
 struct Ascent<'a> {
-    wind: Wind,
+    wind: &'a Wind,
     world: &'a mut World,
     evaluation: &'a mut Evaluation,
     system: &'a TetheredSystem,
@@ -118,7 +107,7 @@ impl Ascent<'_> {
             _ => anchored_m_s,
         };
         Ok(SteadySystem {
-            system: TetheredSystem::default(),
+            system: self.system.clone(),
             velocity_m_s,
             instability: stability::find(self.world, self.evaluation, &unplaced),
             vertical_slope_n_m: reached.vertical_slope_n_m,
