@@ -50,6 +50,32 @@ pub(super) struct Drift {
     pub(super) altitude_m: f64,
 }
 
+/// Why there is no steady drift, or no steady state at all.
+#[derive(Debug)]
+pub(super) struct NoDrift {
+    pub(super) error: SetupError,
+    /// Whether no other guess, and no smaller step, can help.
+    pub(super) is_certain: bool,
+}
+
+impl From<SetupError> for NoDrift {
+    fn from(error: SetupError) -> Self {
+        Self {
+            error,
+            is_certain: false,
+        }
+    }
+}
+
+impl NoDrift {
+    fn certain(error: SetupError) -> Self {
+        Self {
+            error,
+            is_certain: true,
+        }
+    }
+}
+
 impl Drift {
     fn moved(self, step: DVec3) -> Self {
         Self {
@@ -91,14 +117,16 @@ impl Goal {
 
 impl FreeSystem<'_> {
     /// Where the search begins: drifting with the air, where buoyancy carries the weight.
-    pub(super) fn begin(&mut self) -> Result<Drift, SetupError> {
+    pub(super) fn begin(&self) -> Result<Drift, NoDrift> {
         let mut altitude_m = self.altitude_m();
         let environment = self.world.resource::<EnvironmentModel>();
         if !is_air_uniform(environment) {
             match buoyant_altitude::shift_m(self.world, self.system) {
                 Ok(shift_m) => altitude_m += shift_m,
                 // An updraft may carry what buoyancy does not.
-                Err(error) if self.wind_m_s(altitude_m)?.z == 0.0 => return Err(error),
+                Err(error) if self.wind_m_s(altitude_m)?.z == 0.0 => {
+                    return Err(NoDrift::certain(error));
+                }
                 Err(_) => {}
             }
         }
@@ -110,8 +138,9 @@ impl FreeSystem<'_> {
 
     /// Brings the system to its steady drift from `begin`; gives that with the slope of the vertical
     /// force over altitude, N/m, if the altitude was free.
-    pub(super) fn solve(&mut self, begin: Drift) -> Result<(Drift, Option<f64>), SetupError> {
+    pub(super) fn solve(&mut self, begin: Drift) -> Result<(Drift, Option<f64>), NoDrift> {
         let mut here = begin;
+        self.velocity_m_s(here).map_err(NoDrift::certain)?;
         let mut force = self.settle(here)?;
         let goal = self.goal(force);
         let mut slope_n_m = None;
@@ -269,10 +298,10 @@ impl FreeSystem<'_> {
     }
 
     /// Nothing that an unknown could have balanced may remain, and nothing along what is held.
-    fn check(&self, force: DVec3, goal: &Goal) -> Result<(), SetupError> {
+    fn check(&self, force: DVec3, goal: &Goal) -> Result<(), NoDrift> {
         let vertical_n = force.z;
         if vertical_n.abs() > goal.tolerance_n() && goal.free.z == 0.0 {
-            return Err(match buoyant_altitude::shift_m(self.world, self.system) {
+            let error = match buoyant_altitude::shift_m(self.world, self.system) {
                 Err(error) if vertical_n < 0.0 => error,
                 _ => refused(
                     self.world,
@@ -285,7 +314,8 @@ impl FreeSystem<'_> {
                     "size the balloon with `radius: Equilibrium(altitude_m: ..)`, or give the air a \
                      density that falls with altitude",
                 ),
-            });
+            };
+            return Err(NoDrift::certain(error));
         }
         if goal.size_n(force) > goal.tolerance_n() {
             let reason = format!(
@@ -293,7 +323,7 @@ impl FreeSystem<'_> {
                 (force * goal.free).length()
             );
             let help = "start it nearer to where it floats, or hold it with `Fixed: ()`";
-            return Err(refused(self.world, self.reference, "", &reason, help));
+            return Err(refused(self.world, self.reference, "", &reason, help).into());
         }
         Ok(())
     }

@@ -225,7 +225,11 @@ fn failure(world: &World, sites: &[Site], force_n: f64, error: NewtonError<Fault
                 .iter()
                 .find(|site| holds(site.translation) || holds(site.rotation));
             let force = largest_residual * force_n;
-            let reason = format!("a force of {force:.3e} N remains on it");
+            let reason = if force.is_finite() {
+                format!("a force of {force:.3e} N remains on it")
+            } else {
+                "the forces on it are too large to reckon with".to_owned()
+            };
             no_equilibrium(world, site.map(|site| site.entity), &reason)
         }
     }

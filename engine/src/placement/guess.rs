@@ -7,6 +7,7 @@ use aerobot_components::body::Body;
 use aerobot_components::state::{Attitude, Inertia, Mass, Position};
 use aerobot_components::tether::{Attachment, Tether, TetherParts};
 use aerobot_systems::environment::EnvironmentModel;
+use aerobot_systems::instruments::attitude::heading_rad;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
 use glam::{DQuat, DVec3};
@@ -50,10 +51,14 @@ pub(super) fn place_bodies(
     }
 }
 
-/// Hangs all of `bodies` anew from what stands and is not among them.
-pub(super) fn hang_anew(world: &mut World, bodies: &[Entity]) {
+/// Hangs `bodies` anew, all but one that stays where it is and is turned only.
+pub(super) fn hang_anew(world: &mut World, bodies: &[Entity], stays: Option<Entity>) {
     let lines = lines(world);
-    hang(world, &lines, bodies, &mut bodies.to_vec());
+    let bodies_to_place = bodies.iter().copied();
+    let mut waiting = bodies_to_place
+        .filter(|body| Some(*body) != stays)
+        .collect();
+    hang(world, &lines, bodies, &mut waiting);
 }
 
 fn lines(world: &mut World) -> Vec<Line> {
@@ -126,7 +131,7 @@ fn hang(world: &mut World, lines: &[Line], bodies: &[Entity], waiting: &mut Vec<
 }
 
 /// Turns bodies to where plumb lines hold them: upward forces f_i at places r_i make no torque if
-/// sum f_i r_i points up, and the shortest turn there leaves the heading alone.
+/// sum f_i r_i points up; they keep the heading they have.
 fn turn(
     world: &mut World,
     lines: &[Line],
@@ -150,7 +155,8 @@ fn turn(
         }
         let lean = leans.get(body).copied().and_then(DVec3::try_normalize);
         if let (Some(lean), Some(mut attitude)) = (lean, world.get_mut::<Attitude>(*body)) {
-            attitude.0 = DQuat::from_rotation_arc(lean, DVec3::Z);
+            let heading = DQuat::from_rotation_z(heading_rad(attitude.0));
+            attitude.0 = heading * DQuat::from_rotation_arc(lean, DVec3::Z);
         }
     }
 }

@@ -8,7 +8,7 @@ use aerobot_systems::environment::wind::Wind;
 use bevy_ecs::world::World;
 use glam::DVec3;
 
-use super::drift::{Drift, FreeSystem, set_motion};
+use super::drift::{Drift, FreeSystem, NoDrift, set_motion};
 use super::equilibrium::solve_shape;
 use super::snapshot::Snapshot;
 use super::stability::{self, Instability};
@@ -79,6 +79,7 @@ struct Ascent<'a> {
 }
 
 /// A part of the way that was reached.
+#[derive(Default)]
 struct Reached {
     part: f64,
     drift: Option<Drift>,
@@ -86,7 +87,8 @@ struct Reached {
 }
 
 impl Ascent<'_> {
-    /// From where it stands; failing that, from where it would hang plumb.
+    /// From where it stands; failing that, from where it would hang plumb, the wind brought up in parts;
+    /// failing that too, so from where it stands.
     fn settle(&mut self) -> Result<SteadySystem, SetupError> {
         let anchored_m_s = anchor_velocity_m_s(self.world, self.system)?;
         let unplaced = Unplaced {
@@ -95,16 +97,25 @@ impl Ascent<'_> {
             tethers: Some(self.system.tethers.clone()),
         };
         let start = Snapshot::of(self.world);
-        let mut outcome = self.bring_up(&unplaced, anchored_m_s);
-        if outcome.is_err() && !self.system.tethers.is_empty() {
+        let mut outcome = self.at_part(&unplaced, anchored_m_s, 1.0, &Reached::default());
+        for plumb in [true, false] {
+            if outcome.as_ref().is_ok() || outcome.as_ref().is_err_and(|error| error.is_certain) {
+                break;
+            }
             start.restore(self.world);
-            self.hang_plumb();
-            outcome = self.bring_up(&unplaced, anchored_m_s).or(outcome);
+            if plumb {
+                self.hang_plumb();
+            }
+            // Of two failures, that of the better guess is told.
+            let again = self.bring_up(&unplaced, anchored_m_s);
+            if plumb || again.is_ok() {
+                outcome = again;
+            }
         }
-        let reached = outcome?;
-        let velocity_m_s = match (reached.drift, self.system.reference) {
-            (Some(drift), Some(_)) => self.free_system(&unplaced)?.velocity_m_s(drift)?,
-            _ => anchored_m_s,
+        let reached = outcome.map_err(|failure| failure.error)?;
+        let velocity_m_s = match reached.drift {
+            Some(drift) => self.free_system(&unplaced)?.velocity_m_s(drift)?,
+            None => anchored_m_s,
         };
         Ok(SteadySystem {
             system: self.system.clone(),
@@ -114,35 +125,18 @@ impl Ascent<'_> {
         })
     }
 
-    /// A guess that forgets the poses of the scene, but for that of a floating reference body.
+    /// A guess that forgets the poses of the scene, but for the place of a floating reference body and the
+    /// headings.
     fn hang_plumb(&mut self) {
-        let bodies = self.system.bodies.iter().copied();
-        let hanging: Vec<_> = bodies
-            .filter(|body| Some(*body) != self.system.reference)
-            .collect();
-        guess::hang_anew(self.world, &hanging);
+        guess::hang_anew(self.world, &self.system.bodies, self.system.reference);
         for tether in &self.system.tethers {
             nodes::place_sagging(self.world, *tether);
         }
     }
 
-    fn bring_up(
-        &mut self,
-        unplaced: &Unplaced,
-        anchored_m_s: DVec3,
-    ) -> Result<Reached, SetupError> {
-        let mut reached = Reached {
-            part: 0.0,
-            drift: None,
-            vertical_slope_n_m: None,
-        };
+    fn bring_up(&mut self, unplaced: &Unplaced, anchored_m_s: DVec3) -> Result<Reached, NoDrift> {
+        let mut reached = Reached::default();
         let mut part = 1.0_f64;
-        // What floats nowhere does so in any wind.
-        if self.system.reference.is_some() {
-            let mut free = self.free_system(unplaced)?;
-            let begin = free.begin()?;
-            free.velocity_m_s(begin)?;
-        }
         while reached.part < 1.0 {
             let target = (reached.part + part).min(1.0);
             let before = Snapshot::of(self.world);
@@ -151,7 +145,9 @@ impl Ascent<'_> {
                     reached = now;
                     part *= 2.0;
                 }
-                Err(error) if part < SMALLEST_PART_OF_WIND => return Err(error),
+                Err(failure) if failure.is_certain || part < SMALLEST_PART_OF_WIND => {
+                    return Err(failure);
+                }
                 Err(_) => {
                     before.restore(self.world);
                     part *= 0.5;
@@ -168,17 +164,17 @@ impl Ascent<'_> {
         anchored_m_s: DVec3,
         part: f64,
         reached: &Reached,
-    ) -> Result<Reached, SetupError> {
+    ) -> Result<Reached, NoDrift> {
         self.world.resource_mut::<EnvironmentModel>().wind = self.wind.scaled(part);
         let paths = self.slow_down_anchors(part);
         let result = if self.system.reference.is_some() {
             self.drift_from(unplaced, part, reached)
         } else {
             set_motion(self.world, self.system, part * anchored_m_s);
-            solve_shape(self.world, self.evaluation, unplaced).map(|()| Reached {
+            let solved = solve_shape(self.world, self.evaluation, unplaced);
+            solved.map_err(NoDrift::from).map(|()| Reached {
                 part,
-                drift: None,
-                vertical_slope_n_m: None,
+                ..Reached::default()
             })
         };
         self.world.resource_mut::<EnvironmentModel>().wind = self.wind.clone();
@@ -193,7 +189,7 @@ impl Ascent<'_> {
         unplaced: &Unplaced,
         part: f64,
         reached: &Reached,
-    ) -> Result<Reached, SetupError> {
+    ) -> Result<Reached, NoDrift> {
         let mut free = self.free_system(unplaced)?;
         let mut begin = free.begin()?;
         if let Some(drift) = reached.drift {
