@@ -140,6 +140,20 @@ pub struct Residual {
     pub round_off_n: f64,
 }
 
+impl Trim {
+    /// The body or anchor of a name.
+    #[must_use]
+    pub fn body(&self, name: &str) -> Option<&TrimmedBody> {
+        self.bodies.iter().find(|body| body.name == name)
+    }
+
+    /// The tether of a name.
+    #[must_use]
+    pub fn tether(&self, name: &str) -> Option<&TrimmedTether> {
+        self.tethers.iter().find(|tether| tether.name == name)
+    }
+}
+
 impl Simulation {
     /// Brings the simulation to its steady state in the scene's own wind, as it stands at the time of
     /// the simulation, from where it is: a system that anchors hold comes to rest against them, one that
