@@ -16,5 +16,4 @@ pub mod stable_step;
 mod stopping;
 mod summarise;
 pub mod trim;
-pub mod trimmed_scene;
 pub mod world;

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use aerobot_engine::plugin::Simulator;
+use aerobot_engine::trim::scene_file::{check_target, write_trimmed_scene};
 use aerobot_engine::trim::{Residual, Trim, TrimmedBody, TrimmedEnd, TrimmedSystem, TrimmedTether};
-use aerobot_engine::trimmed_scene::{check_target, write_trimmed_scene};
 use glam::DVec3;
 
 use super::{REFUSED, TrimArguments, complain, say};

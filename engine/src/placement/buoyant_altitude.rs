@@ -114,7 +114,8 @@ pub(super) fn shift_m(world: &World, system: &TetheredSystem) -> Result<f64, Set
             reference,
             "",
             &format!(
-                "floats at no altitude: its lift is {lift_n:.6} N, and {all} weighs {weight_n:.6} N"
+                "floats at no altitude: its lift at the start is {lift_n:.6} N, and {all} weighs \
+                 {weight_n:.6} N"
             ),
             "change the load or the radius, or size the balloon with `radius: \
              Equilibrium(altitude_m: ..)`",

@@ -297,25 +297,10 @@ impl FreeSystem<'_> {
         failure.map_or(Ok(None), Err)
     }
 
-    /// Nothing that an unknown could have balanced may remain, and nothing along what is held.
+    /// Nothing that an unknown could have balanced may remain, and nothing along a vertical that is held.
     fn check(&self, force: DVec3, goal: &Goal) -> Result<(), NoDrift> {
-        let vertical_n = force.z;
-        if vertical_n.abs() > goal.tolerance_n() && goal.free.z == 0.0 {
-            let error = match buoyant_altitude::shift_m(self.world, self.system) {
-                Err(error) if vertical_n < 0.0 => error,
-                _ => refused(
-                    self.world,
-                    self.reference,
-                    "",
-                    &format!(
-                        "finds no equilibrium: {vertical_n:.6e} N remain along the vertical, and no \
-                         altitude changes that in air of uniform density"
-                    ),
-                    "size the balloon with `radius: Equilibrium(altitude_m: ..)`, or give the air a \
-                     density that falls with altitude",
-                ),
-            };
-            return Err(NoDrift::certain(error));
+        if goal.free.z == 0.0 && force.z.abs() > goal.tolerance_n() {
+            return Err(NoDrift::certain(self.unbalanced(force.z)));
         }
         if goal.size_n(force) > goal.tolerance_n() {
             let reason = format!(
@@ -326,6 +311,29 @@ impl FreeSystem<'_> {
             return Err(refused(self.world, self.reference, "", &reason, help).into());
         }
         Ok(())
+    }
+
+    fn unbalanced(&self, vertical_n: f64) -> SetupError {
+        match buoyant_altitude::shift_m(self.world, self.system) {
+            Err(error) if vertical_n < 0.0 => return error,
+            _ => {}
+        }
+        let size = if vertical_n.abs() >= 1e-3 {
+            format!("{vertical_n:.6} N")
+        } else {
+            format!("{vertical_n:.3e} N")
+        };
+        refused(
+            self.world,
+            self.reference,
+            "",
+            &format!(
+                "finds no equilibrium: {size} remain along the vertical, and no altitude changes that in \
+                 air of uniform density"
+            ),
+            "size the balloon with `radius: Equilibrium(altitude_m: ..)`, or give the air a density that \
+             falls with altitude",
+        )
     }
 }
 

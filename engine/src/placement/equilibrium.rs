@@ -28,7 +28,9 @@ const HEADING_HOLD: f64 = 1e-6;
 /// A solution that has turned less than this, rad, carries a hold of less than round-off.
 const NO_TURN_RAD: f64 = 1e-9;
 /// Solutions, each from the one before, after which a heading that still turns is left as it is.
-const MOST_PASSES: usize = 20;
+const MOST_PASSES: usize = 50;
+/// Turns that do not get smaller by this factor are round-off, or restored by next to nothing.
+const LEAST_SETTLING: f64 = 0.97;
 
 /// Forces on the sites as a function of their displacements from the guess.
 pub(super) struct Forces<'a> {
@@ -133,12 +135,15 @@ pub(super) fn solve_shape(
     if sites.is_empty() {
         return Ok(());
     }
+    let mut before_rad = f64::INFINITY;
     solve_from(world, evaluation, &sites, &pattern)?;
     for _ in 0..MOST_PASSES {
         sites = sites_here(world, sites);
-        if solve_from(world, evaluation, &sites, &pattern)? <= NO_TURN_RAD {
+        let turn_rad = solve_from(world, evaluation, &sites, &pattern)?;
+        if turn_rad <= NO_TURN_RAD || turn_rad > LEAST_SETTLING * before_rad {
             break;
         }
+        before_rad = turn_rad;
     }
     Ok(())
 }
@@ -289,6 +294,13 @@ impl Scales {
     }
 }
 
+/// What to do about a start that cannot be evaluated.
+pub(super) const OUTSIDE_HELP: &str =
+    "static equilibrium in still air would put it there; give it a `Pose` to start elsewhere";
+/// What to do about a start that is not found.
+pub(super) const NO_EQUILIBRIUM_HELP: &str =
+    "give the bodies a `Pose`, and slack tethers a `start: Straight`";
+
 /// The search left what can be evaluated; the cause is the fault, not the search.
 pub(super) fn fault_on_the_way(world: &World, fault: &Fault) -> SetupError {
     let name = fault.entity.and_then(|entity| owner_name(world, entity));
@@ -296,11 +308,7 @@ pub(super) fn fault_on_the_way(world: &World, fault: &Fault) -> SetupError {
         format!("entities.{}", name.split('/').next().unwrap_or(""))
     });
     let who = name.map_or_else(String::new, |name| format!("`{name}`: "));
-    SetupError::new(
-        path,
-        format!("{who}{}", fault.message),
-        "static equilibrium in still air would put it there; give it a `Pose` to start elsewhere",
-    )
+    SetupError::new(path, format!("{who}{}", fault.message), OUTSIDE_HELP)
 }
 
 pub(super) fn no_equilibrium(world: &World, entity: Option<Entity>, reason: &str) -> SetupError {
@@ -315,6 +323,6 @@ pub(super) fn no_equilibrium(world: &World, entity: Option<Entity>, reason: &str
     SetupError::new(
         path,
         format!("{name} finds no static equilibrium: {reason}"),
-        "give the bodies a `Pose`, and slack tethers a `start: Straight`",
+        NO_EQUILIBRIUM_HELP,
     )
 }

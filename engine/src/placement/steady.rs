@@ -9,7 +9,7 @@ use bevy_ecs::world::World;
 use glam::DVec3;
 
 use super::drift::{Drift, FreeSystem, NoDrift, set_motion};
-use super::equilibrium::solve_shape;
+use super::equilibrium::{NO_EQUILIBRIUM_HELP, OUTSIDE_HELP, solve_shape};
 use super::snapshot::Snapshot;
 use super::stability::{self, Instability};
 use super::tethered_system::{self, TetheredSystem, anchor_velocity_m_s};
@@ -67,7 +67,22 @@ pub(crate) fn settle(
         // What was there could be evaluated when it was built.
         let _ = evaluation.run(world);
     }
-    settled
+    settled.map_err(for_a_steady_state)
+}
+
+/// What does not settle is no failure of the scene's start: its remedies are others.
+fn for_a_steady_state(mut error: SetupError) -> SetupError {
+    for violation in &mut error.0 {
+        let help = violation.help.as_deref();
+        if help == Some(OUTSIDE_HELP) || help == Some(NO_EQUILIBRIUM_HELP) {
+            violation.help = Some(
+                "this wind may leave it no steady state; if it does, a nearer start helps: trim in a \
+                 weaker wind, and go on from there"
+                    .to_owned(),
+            );
+        }
+    }
+    error
 }
 
 /// One system on its way into the wind.

@@ -12,10 +12,10 @@ use aerobot_components::scene_component::SceneComponent;
 use aerobot_components::tether::Tether;
 use glam::DVec3;
 
+use super::{Trim, TrimmedBody, TrimmedTether};
 use crate::recording::number::write_number;
 use crate::scene::source::{FieldPath, Segment, apply, parse_override};
 use crate::scene::{Scene, SceneError};
-use crate::trim::{Trim, TrimmedBody, TrimmedTether};
 
 /// Why a trimmed scene was not written.
 #[derive(Debug)]
