@@ -282,6 +282,37 @@ fn what_has_no_steady_state_is_refused_with_its_reason_and_nothing_is_written() 
     assert!(count >= 8, "{count} scenes");
 }
 
+/// What is absurd is refused or comes out in numbers.
+#[test]
+fn no_number_beyond_reckoning_is_printed() {
+    for set in [
+        "entities.gondola.Body.mass_kg=1e-300",
+        "entities.gondola.Body.mass_kg=1e300",
+        "entities.tether.Tether.axial_stiffness_n=1e300",
+        "entities.tether.Tether.drag.normal=1e300",
+        "entities.gondola.Pose=(position_m: (1e6, 0, 50_000))",
+        "environment.gravity=Constant(1e-6)",
+        "environment.wind=[Uniform(velocity_m_s: (1e200, 0, 0))]",
+        "environment.wind=[Shear(altitude_m: 0, gradient_per_s: 1e200)]",
+        "environment.atmosphere=Exponential(density_kg_m3: 0.8, altitude_m: 56_000, scale_height_m: 1)",
+    ] {
+        let arguments = ["--set", "environment.wind=[VenusZonal]", "--set", set];
+        let trim = aerobot(
+            &[
+                &["trim", "scenes/paper/comparison_900m.ron"],
+                &arguments[..],
+            ]
+            .concat(),
+        );
+        assert!(matches!(trim.status.code(), Some(0 | 2)), "{set}");
+        let said = text(&trim.stdout) + &text(&trim.stderr);
+        assert!(
+            !said.contains(" inf ") && !said.contains("(inf") && !said.contains("-inf"),
+            "{said}"
+        );
+    }
+}
+
 /// A refusal leaves a simulation where it was.
 #[test]
 fn a_refusal_changes_nothing() {

@@ -105,16 +105,16 @@ pub(super) fn shift_m(world: &World, system: &TetheredSystem) -> Result<f64, Set
     };
     if !(excess(low) > 0.0 && excess(high) < 0.0) {
         let all = if system.tethers.is_empty() {
-            "it"
+            "it weighs"
         } else {
-            "it and all that is tethered to it"
+            "it and all that is tethered to it weigh"
         };
         return Err(refused(
             world,
             reference,
             "",
             &format!(
-                "floats at no altitude: its lift at the start is {lift_n:.6} N, and {all} weighs \
+                "floats at no altitude: its lift at the start is {lift_n:.6} N, and {all} \
                  {weight_n:.6} N"
             ),
             "change the load or the radius, or size the balloon with `radius: \

@@ -28,7 +28,7 @@ use crate::evaluation::Evaluation;
 use crate::scene::SetupError;
 
 /// Newton iterations at most.
-const MOST_ITERATIONS: usize = 60;
+const MOST_ITERATIONS: usize = 30;
 /// Halvings of a step before it counts as useless.
 const HALVINGS: usize = 10;
 /// Longest step in altitude, m, and in velocity, m/s.

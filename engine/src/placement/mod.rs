@@ -5,7 +5,7 @@
 //! A system that nothing fixes floats: its balloon's altitude is where the vertical force vanishes,
 //! its horizontal place is x = y = 0.
 //!
-//! From there, or from any other start, [`settle`] finds the steady state in the scene's own wind.
+//! From there, or from any other start, `settle` finds the steady state in the scene's own wind.
 
 mod buoyant_altitude;
 mod drift;

@@ -2,14 +2,19 @@
 //! anchors, or drifting as a whole.
 
 use aerobot_components::body::Moving;
+use aerobot_components::state::{Acceleration, AngularAcceleration, StateIndex, Velocity};
 use aerobot_systems::clock::Clock;
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::environment::wind::Wind;
+use bevy_ecs::entity::Entity;
+use bevy_ecs::query::With;
 use bevy_ecs::world::World;
 use glam::DVec3;
 
 use super::drift::{Drift, FreeSystem, NoDrift, set_motion};
-use super::equilibrium::{NO_EQUILIBRIUM_HELP, OUTSIDE_HELP, solve_shape};
+use super::equilibrium::{
+    NO_EQUILIBRIUM_HELP, OUTSIDE_HELP, fault_on_the_way, no_equilibrium, solve_shape,
+};
 use super::snapshot::Snapshot;
 use super::stability::{self, Instability};
 use super::tethered_system::{self, TetheredSystem, anchor_velocity_m_s};
@@ -60,6 +65,7 @@ pub(crate) fn settle(
             ascent.settle()
         })
         .collect();
+    let settled = settled.and_then(|settled| check_finite(world, evaluation).map(|()| settled));
     if settled.is_ok() {
         take_as_origin(world);
     } else {
@@ -68,6 +74,31 @@ pub(crate) fn settle(
         let _ = evaluation.run(world);
     }
     settled.map_err(for_a_steady_state)
+}
+
+/// Everything that would be integrated must have a speed and an acceleration that are numbers.
+fn check_finite(world: &mut World, evaluation: &mut Evaluation) -> Result<(), SetupError> {
+    evaluation
+        .run(world)
+        .map_err(|fault| fault_on_the_way(world, &fault))?;
+    let mut moving = world.query_filtered::<(
+        Entity,
+        &Velocity,
+        &Acceleration,
+        Option<&AngularAcceleration>,
+    ), With<StateIndex>>();
+    let beyond = moving
+        .iter(world)
+        .find(|(_, velocity, linear, angular)| {
+            let sizes = [velocity.0, linear.0, angular.map_or(DVec3::ZERO, |a| a.0)];
+            !sizes.iter().all(|size| size.length().is_finite())
+        })
+        .map(|(entity, ..)| entity);
+    let reason = "its speed or its acceleration is beyond what can be reckoned with";
+    match beyond {
+        None => Ok(()),
+        beyond => Err(no_equilibrium(world, beyond, reason)),
+    }
 }
 
 /// What does not settle is no failure of the scene's start: its remedies are others.
@@ -236,7 +267,7 @@ impl Ascent<'_> {
     }
 
     /// Takes a part of the speed of moving anchors, with their places as they are; gives their own paths.
-    fn slow_down_anchors(&mut self, part: f64) -> Vec<(bevy_ecs::entity::Entity, Moving)> {
+    fn slow_down_anchors(&mut self, part: f64) -> Vec<(Entity, Moving)> {
         let time_s = self.world.resource::<Clock>().time_s;
         let mut paths = Vec::new();
         for anchor in &self.system.anchors {
