@@ -16,7 +16,7 @@ use aerobot_components::state::{AngularVelocity, Force, Position, Velocity};
 use aerobot_systems::environment::EnvironmentModel;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat2, DMat3, DVec2, DVec3};
 
 use super::equilibrium::{Scales, fault_on_the_way, solve_shape};
 use super::snapshot::Snapshot;
@@ -40,6 +40,9 @@ const VELOCITY_DIFFERENCE: f64 = 1e-3;
 /// Slope of the horizontal force, in parts of the weight per m/s, below which nothing steers the drift:
 /// in air that moves as the system does, drag begins with the square.
 const LEAST_SLOPE: f64 = 1e-7;
+/// Iterations, and the force as a part of all weight that may remain, for a guess.
+const SHAPE_ITERATIONS: usize = 10;
+const SHAPE_TOLERANCE: f64 = 1e-6;
 /// The force that may remain, as a part of all weight, beside what round-off explains.
 const TOLERANCE: f64 = 1e-10;
 
@@ -136,6 +139,46 @@ impl FreeSystem<'_> {
         })
     }
 
+    /// The drift at which the shape as it stands is pushed nowhere along the horizontal, from `here`: a
+    /// far better beginning in shear than the wind at the reference body, and cheap.
+    pub(super) fn drift_of_shape(&mut self, mut here: Drift) -> Result<Drift, SetupError> {
+        let environment = self.world.resource::<EnvironmentModel>();
+        if !environment.wind.depends_on_altitude() {
+            return Ok(here);
+        }
+        let force_n = Scales::of(self.world).force_n;
+        let step = VELOCITY_DIFFERENCE * self.wind_spread_m_s(here)?;
+        let mut push = self.push_on_shape(here)?;
+        for _ in 0..SHAPE_ITERATIONS {
+            if push.length() <= SHAPE_TOLERANCE * force_n {
+                break;
+            }
+            let mut slope = |axis: DVec2| -> Result<DVec2, SetupError> {
+                let there = self.push_on_shape(here.moved((step * axis).extend(0.0)))?;
+                Ok((there - push) / step - LEAST_SLOPE * force_n * axis)
+            };
+            let slopes = DMat2::from_cols(slope(DVec2::X)?, slope(DVec2::Y)?);
+            let next = here.moved(-(slopes.inverse() * push).extend(0.0));
+            let next_push = self.push_on_shape(next)?;
+            if !next_push.is_finite() || next_push.length() >= push.length() {
+                break;
+            }
+            (here, push) = (next, next_push);
+        }
+        Ok(here)
+    }
+
+    /// Sum of the horizontal forces on all of the system in a drift, its shape as it stands, N.
+    fn push_on_shape(&mut self, drift: Drift) -> Result<DVec2, SetupError> {
+        self.place(drift)?;
+        self.evaluation
+            .run(self.world)
+            .map_err(|fault| fault_on_the_way(self.world, &fault))?;
+        let parts = self.system.bodies.iter().chain(&self.system.nodes);
+        let forces = parts.filter_map(|part| self.world.get::<Force>(*part));
+        Ok(forces.map(|force| force.0.truncate()).sum())
+    }
+
     /// Brings the system to its steady drift from `begin`; gives that with the slope of the vertical
     /// force over altitude, N/m, if the altitude was free.
     pub(super) fn solve(&mut self, begin: Drift) -> Result<(Drift, Option<f64>), NoDrift> {
@@ -206,8 +249,8 @@ impl FreeSystem<'_> {
         }
     }
 
-    /// Puts the system into a drift, lets its shape settle, and gives the force that holds it there, N.
-    fn settle(&mut self, drift: Drift) -> Result<DVec3, SetupError> {
+    /// Puts the system into a drift as it is.
+    fn place(&mut self, drift: Drift) -> Result<(), SetupError> {
         let velocity_m_s = self.velocity_m_s(drift)?;
         let shift_m = drift.altitude_m - self.altitude_m();
         set_motion(self.world, self.system, velocity_m_s);
@@ -220,6 +263,12 @@ impl FreeSystem<'_> {
         if let Some(mut position) = self.world.get_mut::<Position>(self.reference) {
             position.0.z = drift.altitude_m;
         }
+        Ok(())
+    }
+
+    /// Puts the system into a drift, lets its shape settle, and gives the force that holds it there, N.
+    fn settle(&mut self, drift: Drift) -> Result<DVec3, SetupError> {
+        self.place(drift)?;
         solve_shape(self.world, self.evaluation, self.unplaced)?;
         self.evaluation
             .run(self.world)

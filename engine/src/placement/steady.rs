@@ -237,14 +237,15 @@ impl Ascent<'_> {
         reached: &Reached,
     ) -> Result<Reached, NoDrift> {
         let mut free = self.free_system(unplaced)?;
-        let mut begin = free.begin()?;
-        if let Some(drift) = reached.drift {
+        let begin = free.begin()?;
+        let begin = match reached.drift {
             // All velocities of a steady state grow together while its shape stays.
-            begin = Drift {
+            Some(drift) => Drift {
                 against_air_m_s: drift.against_air_m_s * (part / reached.part),
                 altitude_m: drift.altitude_m,
-            };
-        }
+            },
+            None => free.drift_of_shape(begin)?,
+        };
         let (drift, vertical_slope_n_m) = free.solve(begin)?;
         Ok(Reached {
             part,

@@ -120,6 +120,8 @@ pub struct Residual {
     pub angular_acceleration_rad_s2: f64,
     /// The body that has it; empty where nothing turns.
     pub angular_acceleration_at: String,
+    /// Largest torque about a centre of mass, N m.
+    pub torque_n_m: f64,
     /// Force that the round-off of positions makes of the stiffest segment, N: less than this cannot be
     /// asked for.
     pub round_off_n: f64,

@@ -3,7 +3,8 @@
 use aerobot_components::body::Anchor;
 use aerobot_components::segment::{SegmentGeometry, Tension};
 use aerobot_components::state::{
-    Acceleration, AngularAcceleration, Attitude, Force, Inertia, Position, StateIndex, Velocity,
+    Acceleration, AngularAcceleration, Attitude, Force, Inertia, Position, StateIndex, Torque,
+    Velocity,
 };
 use aerobot_components::tether::{Tether, TetherNode, TetherParts};
 use aerobot_systems::clock::Clock;
@@ -161,10 +162,14 @@ fn residual(world: &mut World) -> Residual {
         force.see(left.0.length(), name);
         linear.see(acceleration.0.length(), name);
     }
-    let mut turning = world
-        .query_filtered::<(&EntityName, &AngularAcceleration), (With<StateIndex>, With<Inertia>)>();
-    for (name, acceleration) in turning.iter(world) {
+    let mut torque_n_m = 0.0_f64;
+    let mut turning = world.query_filtered::<
+        (&EntityName, &AngularAcceleration, &Torque),
+        (With<StateIndex>, With<Inertia>),
+    >();
+    for (name, acceleration, torque) in turning.iter(world) {
         angular.see(acceleration.0.length(), name);
+        torque_n_m = torque_n_m.max(torque.0.length());
     }
     Residual {
         force_n: force.0,
@@ -173,6 +178,7 @@ fn residual(world: &mut World) -> Residual {
         acceleration_at: linear.1,
         angular_acceleration_rad_s2: angular.0,
         angular_acceleration_at: angular.1,
+        torque_n_m,
         round_off_n: placement::position_noise_n(world),
     }
 }
@@ -221,10 +227,12 @@ fn warnings(world: &World, systems: &[SteadySystem], residual: &Residual) -> Vec
             residual.acceleration_at, residual.acceleration_m_s2
         ));
     }
-    if residual.angular_acceleration_rad_s2 > SMALL_ACCELERATION {
+    // Round-off at the arm of a metre.
+    if residual.angular_acceleration_rad_s2 > SMALL_ACCELERATION
+        && residual.torque_n_m > ROUND_OFFS * residual.round_off_n
+    {
         warnings.push(format!(
-            "`{}` is left with an angular acceleration of {:.3e} rad/s^2: a heading that nothing \
-             balances, or round-off",
+            "`{}` is left with an angular acceleration of {:.3e} rad/s^2: nothing balances its heading",
             residual.angular_acceleration_at, residual.angular_acceleration_rad_s2
         ));
     }
