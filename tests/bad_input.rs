@@ -366,10 +366,13 @@ fn sample() -> String {
         .replace("nodes: 10,", "nodes: 2,")
 }
 
-/// Loads a scene and builds it if it loads; only that it returns is asked.
+/// Loads a scene, and builds and trims it if it loads; only that it returns is asked.
 fn must_return(simulator: &Simulator, text: String) -> bool {
     match simulator.load_text("sample.ron", text, Path::new("."), &[]) {
-        Ok(scene) => simulator.build(&scene).is_ok(),
+        Ok(scene) => {
+            let built = simulator.build(&scene);
+            built.and_then(|mut built| built.trim(&scene)).is_ok()
+        }
         Err(error) => {
             assert!(error.text.starts_with("error: "), "{error}");
             false

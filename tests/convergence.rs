@@ -9,9 +9,7 @@
 
 mod flight;
 
-use aerobot::components::state::Position;
 use aerobot::engine::plugin::Simulator;
-use aerobot::engine::world::SceneEntities;
 use flight::{fly, load};
 use glam::DVec3;
 
@@ -150,15 +148,11 @@ fn towline_probe_z_m(nodes: u32, lumping: &str) -> f64 {
     );
     let simulator = Simulator::new();
     let scene = load(&simulator, &text, &[]);
-    let mut simulation = simulator
+    let trim = simulator
         .build(&scene)
+        .and_then(|mut simulation| simulation.trim(&scene))
         .unwrap_or_else(|error| panic!("{error}"));
-    simulation
-        .settle_in_wind(&scene)
-        .unwrap_or_else(|error| panic!("{error}"));
-    let world = simulation.world();
-    let probe = world.resource::<SceneEntities>().get("probe").unwrap();
-    world.get::<Position>(probe).unwrap().0.z
+    trim.body("probe").unwrap().position_m.z
 }
 
 /// The same discrete line by shooting, in the plane: from a guess of the probe's place upwards, segment

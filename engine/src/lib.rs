@@ -17,5 +17,5 @@ pub mod simulation;
 pub mod stable_step;
 mod stopping;
 mod summarise;
-
+pub mod trim;
 pub mod world;

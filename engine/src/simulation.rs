@@ -144,25 +144,12 @@ impl Simulation {
         self.summary(stop)
     }
 
-    /// Brings a system that anchors hold to rest in the scene's own wind before it is run: its
-    /// steady state, where a run would end after all motion has died out.
+    /// As [`Simulation::trim`], for those who do not ask what was found.
     ///
     /// # Errors
-    /// What finds no rest, rendered.
+    /// As there.
     pub fn settle_in_wind(&mut self, scene: &Scene) -> Result<(), SceneError> {
-        with_integration(&mut self.world, |world, integration| {
-            let Integration {
-                evaluation,
-                trajectory,
-                ..
-            } = integration;
-            placement::settle_in_wind(world, evaluation, scene)?;
-            evaluation.state.gather(world, &mut trajectory.state);
-            trajectory.switch();
-            Ok(())
-        })
-        .unwrap_or(Ok(()))
-        .map_err(|error| scene.refuse(error))
+        self.trim(scene).map(|_| ())
     }
 
     /// The world, for programs that look at components themselves.

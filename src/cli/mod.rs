@@ -5,6 +5,7 @@
 mod check;
 mod reproduce;
 mod run;
+mod trim;
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -34,6 +35,8 @@ enum Command {
     Check(CheckArguments),
     /// Compute cases of the paper anew and set them beside what it shows.
     Reproduce(ReproduceArguments),
+    /// Find the steady state of a scene in its wind, and write a scene that starts there.
+    Trim(TrimArguments),
 }
 
 /// What every command that reads a scene takes.
@@ -111,6 +114,23 @@ struct ReproduceArguments {
     quiet: bool,
 }
 
+#[derive(Args)]
+struct TrimArguments {
+    /// The scene, a RON file.
+    scene: PathBuf,
+    #[command(flatten)]
+    overrides: SceneArguments,
+    /// File for the scene that starts in its steady state.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Overwrite a file that exists.
+    #[arg(long)]
+    force: bool,
+    /// Print nothing but errors and warnings.
+    #[arg(long)]
+    quiet: bool,
+}
+
 impl SceneArguments {
     /// All overrides as `PATH=RON`, those of `--set` first.
     fn as_overrides(&self) -> Vec<String> {
@@ -150,5 +170,6 @@ pub fn main(plugins: &[&dyn Plugin]) -> ExitCode {
         Command::Run(arguments) => run::run(&simulator, &arguments),
         Command::Check(arguments) => check::check(&simulator, &arguments),
         Command::Reproduce(arguments) => reproduce::reproduce(&simulator, &arguments),
+        Command::Trim(arguments) => trim::trim(&simulator, &arguments),
     }
 }

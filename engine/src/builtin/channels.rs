@@ -172,6 +172,10 @@ fn wanted(
 /// Finds what each body hangs from, once everything is placed: the carrier of the attachment highest
 /// above the body's own, by all tethers between the two.
 pub(crate) fn find_supports(world: &mut World) {
+    let bodies = world.resource::<SceneEntities>().in_order().to_vec();
+    for body in bodies {
+        world.entity_mut(body).remove::<Support>();
+    }
     let mut hangings: Vec<Hanging> = Vec::new();
     let mut tethers = world.query::<&TetherParts>();
     for parts in tethers.iter(world) {

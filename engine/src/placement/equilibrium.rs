@@ -1,11 +1,9 @@
 //! Newton's method on the forces of the run: no force on any node, no force and no torque on any
 //! body that is free to find its place.
 
-use std::collections::BTreeMap;
-
 use aerobot_components::segment::{KelvinVoigt, Segment};
-use aerobot_components::state::{Attitude, Force, Inertia, Mass, Position, Torque};
-use aerobot_components::tether::{Attachment, Tether, TetherNode, TetherParts, TetherStart};
+use aerobot_components::state::{Attitude, Force, Mass, Position, Torque};
+use aerobot_components::tether::{Tether, TetherNode};
 use aerobot_systems::dynamics::rotation_chart::{exponential, logarithm};
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::fault::Fault;
@@ -14,50 +12,39 @@ use aerobot_systems::nonlinear_solver::damped_newton::{DampedNewton, NewtonError
 use aerobot_systems::nonlinear_solver::finite_difference_jacobian::Residual;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
+use super::sites::{Site, sites, sites_here};
 use super::{Unplaced, floating};
 use crate::evaluation::Evaluation;
 use crate::scene::{Scene, SetupError};
 use crate::stopping::owner_name;
 use crate::world::EntityName;
 
-/// What is free to find its place, with its place in the unknowns.
-#[derive(Clone, Copy, Debug)]
-struct Site {
-    entity: Entity,
-    /// The place of three displacements, m, if it may move.
-    translation: Option<usize>,
-    /// The place of three components of a rotation vector, rad, inertial axes, if it may turn.
-    rotation: Option<usize>,
-    /// Where it stood in the guess.
-    position_m: DVec3,
-    attitude: DQuat,
-}
-
 /// A heading that nothing restores is held by this part of the weight times a metre per radian. Where
 /// tethers do restore it the hold is out of the result, for the last solution starts from the one
 /// before and has not turned from it.
 const HEADING_HOLD: f64 = 1e-6;
+/// A solution that has turned less than this, rad, carries a hold of less than round-off.
+const NO_TURN_RAD: f64 = 1e-9;
+/// Solutions, each from the one before, after which a heading that still turns is left as it is.
+const MOST_PASSES: usize = 50;
+/// Turns that do not get smaller by this factor are round-off, or restored by next to nothing.
+const LEAST_SETTLING: f64 = 0.97;
 
 /// Forces on the sites as a function of their displacements from the guess.
-struct Forces<'a> {
-    world: &'a mut World,
-    evaluation: &'a mut Evaluation,
-    sites: &'a [Site],
-    dimension: usize,
+pub(super) struct Forces<'a> {
+    pub(super) world: &'a mut World,
+    pub(super) evaluation: &'a mut Evaluation,
+    pub(super) sites: &'a [Site],
+    pub(super) dimension: usize,
     /// Stiffness against turning about the vertical away from the guess, N m/rad.
-    heading_hold_n_m: f64,
+    pub(super) heading_hold_n_m: f64,
 }
 
-impl Residual for Forces<'_> {
-    type Error = Fault;
-
-    fn dimension(&self) -> usize {
-        self.dimension
-    }
-
-    fn residual(&mut self, x: &[f64], r: &mut [f64]) -> Result<(), Fault> {
+impl Forces<'_> {
+    /// Puts the sites where `x` says, and evaluates the forces there.
+    pub(super) fn put(&mut self, x: &[f64]) -> Result<(), Fault> {
         for site in self.sites {
             let mut entity = self.world.entity_mut(site.entity);
             if let (Some(at), Some(mut position)) = (site.translation, entity.get_mut::<Position>())
@@ -68,7 +55,19 @@ impl Residual for Forces<'_> {
                 attitude.0 = exponential(DVec3::from_slice(&x[at..])) * site.attitude;
             }
         }
-        self.evaluation.run(self.world)?;
+        self.evaluation.run(self.world)
+    }
+}
+
+impl Residual for Forces<'_> {
+    type Error = Fault;
+
+    fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    fn residual(&mut self, x: &[f64], r: &mut [f64]) -> Result<(), Fault> {
+        self.put(x)?;
         for site in self.sites {
             let entity = self.world.entity(site.entity);
             if let (Some(at), Some(force)) = (site.translation, entity.get::<Force>()) {
@@ -111,11 +110,7 @@ pub(super) fn solve(
     // A floating system settles in altitude between the solutions of its shape; one whose radius was
     // chosen for its altitude is there at once.
     for _ in 0..60 {
-        let (sites, pattern) = sites(world, unplaced);
-        if !sites.is_empty() {
-            solve_shape(world, evaluation, &sites, &pattern)?;
-            solve_shape(world, evaluation, &sites_here(world, sites), &pattern)?;
-        }
+        solve_shape(world, evaluation, unplaced)?;
         if !floating::shift_altitudes(world, evaluation, scene, unplaced)? {
             return Ok(());
         }
@@ -130,104 +125,31 @@ pub(super) fn solve(
     ))
 }
 
-/// The same sites, counted from where they stand now.
-fn sites_here(world: &World, mut sites: Vec<Site>) -> Vec<Site> {
-    for site in &mut sites {
-        site.position_m = world
-            .get::<Position>(site.entity)
-            .map_or(site.position_m, |p| p.0);
-        site.attitude = world
-            .get::<Attitude>(site.entity)
-            .map_or(site.attitude, |a| a.0);
-    }
-    sites
-}
-
-/// Bodies without a pose, and the nodes of tethers that start in equilibrium or hold such a body.
-fn sites(world: &mut World, unplaced: &Unplaced) -> (Vec<Site>, BlockPattern) {
-    let mut sites = Vec::new();
-    let mut dims = Vec::new();
-    let mut offset = 0;
-    let mut add = |world: &World, entity: Entity, moves: bool, turns: bool| {
-        let translation = moves.then_some(offset);
-        offset += if moves { 3 } else { 0 };
-        let rotation = turns.then_some(offset);
-        offset += if turns { 3 } else { 0 };
-        dims.push(3 * (usize::from(moves) + usize::from(turns)));
-        sites.push(Site {
-            entity,
-            translation,
-            rotation,
-            position_m: world.get::<Position>(entity).map_or(DVec3::ZERO, |p| p.0),
-            attitude: world
-                .get::<Attitude>(entity)
-                .map_or(DQuat::IDENTITY, |a| a.0),
-        });
-    };
-    for body in &unplaced.bodies {
-        let moves = !unplaced.floating.contains(body);
-        let turns = world.get::<Inertia>(*body).is_some();
-        if moves || turns {
-            add(world, *body, moves, turns);
-        }
-    }
-    let mut tethers = world.query::<(&Tether, &TetherParts)>();
-    for (tether, parts) in tethers.iter(world) {
-        let holds = [parts.points.first(), parts.points.last()]
-            .into_iter()
-            .flatten()
-            .any(|point| {
-                let carrier = world.get::<Attachment>(*point).map(|end| end.carrier);
-                carrier.is_some_and(|carrier| unplaced.bodies.contains(&carrier))
-            });
-        if holds || tether.start == TetherStart::Equilibrium {
-            for node in parts
-                .points
-                .iter()
-                .filter(|p| world.get::<TetherNode>(**p).is_some())
-            {
-                add(world, *node, true, false);
-            }
-        }
-    }
-    let edges = edges(world, &sites);
-    let pattern = BlockPattern::new(&dims, &edges);
-    (sites, pattern)
-}
-
-/// Pairs of sites that a segment joins.
-fn edges(world: &mut World, sites: &[Site]) -> Vec<(usize, usize)> {
-    let places: BTreeMap<Entity, usize> = sites
-        .iter()
-        .enumerate()
-        .map(|(place, site)| (site.entity, place))
-        .collect();
-    let mut tethers = world.query::<&TetherParts>();
-    let mut edges = Vec::new();
-    for parts in tethers.iter(world) {
-        let place = |point: &Entity| {
-            let owner = world
-                .get::<Attachment>(*point)
-                .map_or(*point, |end| end.carrier);
-            places.get(&owner).copied()
-        };
-        for pair in parts.points.windows(2) {
-            if let (Some(a), Some(b)) = (place(&pair[0]), place(&pair[1])) {
-                edges.push((a, b));
-            }
-        }
-    }
-    edges
-}
-
-fn solve_shape(
+/// Brings everything in `unplaced` to equilibrium where what floats is held in its place.
+pub(super) fn solve_shape(
     world: &mut World,
     evaluation: &mut Evaluation,
-    sites: &[Site],
-    pattern: &BlockPattern,
+    unplaced: &Unplaced,
 ) -> Result<(), SetupError> {
-    let scales = Scales::of(world);
-    let dimension = pattern.dimension();
+    let (mut sites, pattern) = sites(world, unplaced);
+    if sites.is_empty() {
+        return Ok(());
+    }
+    let mut before_rad = f64::INFINITY;
+    solve_from(world, evaluation, &sites, &pattern)?;
+    for _ in 0..MOST_PASSES {
+        sites = sites_here(world, sites);
+        let turn_rad = solve_from(world, evaluation, &sites, &pattern)?;
+        if turn_rad <= NO_TURN_RAD || turn_rad > LEAST_SETTLING * before_rad {
+            break;
+        }
+        before_rad = turn_rad;
+    }
+    Ok(())
+}
+
+/// Steps of differences, of iterations, and sizes of residuals, for every unknown.
+pub(super) fn unknown_scales(sites: &[Site], scales: &Scales, dimension: usize) -> [Vec<f64>; 3] {
     let mut difference_step = vec![0.0; dimension];
     let mut largest_step = vec![0.0; dimension];
     let mut residual_scale = vec![0.0; dimension];
@@ -247,6 +169,19 @@ fn solve_shape(
             residual_scale[at..at + 3].fill(residual);
         }
     }
+    [difference_step, largest_step, residual_scale]
+}
+
+/// One search from where the sites stand; the largest turn about the vertical that it made, rad.
+fn solve_from(
+    world: &mut World,
+    evaluation: &mut Evaluation,
+    sites: &[Site],
+    pattern: &BlockPattern,
+) -> Result<f64, SetupError> {
+    let scales = Scales::of(world);
+    let dimension = pattern.dimension();
+    let [difference_step, largest_step, residual_scale] = unknown_scales(sites, &scales, dimension);
     let settings = NewtonSettings {
         difference_step: &difference_step,
         largest_step: &largest_step,
@@ -271,7 +206,9 @@ fn solve_shape(
     let checked = problem.residual(&x, &mut residual);
     outcome
         .map_err(|error| failure(world, sites, scales.force_n, error))
-        .and(checked.map_err(|fault| fault_on_the_way(world, &fault)))
+        .and(checked.map_err(|fault| fault_on_the_way(world, &fault)))?;
+    let turns = sites.iter().filter_map(|site| site.rotation);
+    Ok(turns.map(|at| x[at + 2].abs()).fold(0.0, f64::max))
 }
 
 /// What a failed search means for a reader; residuals count in parts of `force_n`.
@@ -293,7 +230,11 @@ fn failure(world: &World, sites: &[Site], force_n: f64, error: NewtonError<Fault
                 .iter()
                 .find(|site| holds(site.translation) || holds(site.rotation));
             let force = largest_residual * force_n;
-            let reason = format!("a force of {force:.3e} N remains on it");
+            let reason = if force.is_finite() {
+                format!("a force of {force:.3e} N remains on it")
+            } else {
+                "the forces on it are too large to reckon with".to_owned()
+            };
             no_equilibrium(world, site.map(|site| site.entity), &reason)
         }
     }
@@ -303,8 +244,10 @@ fn failure(world: &World, sites: &[Site], force_n: f64, error: NewtonError<Fault
 pub(super) struct Scales {
     pub(super) force_n: f64,
     length_m: f64,
-    difference_m: f64,
+    pub(super) difference_m: f64,
     pub(super) floor: f64,
+    /// Round-off of an altitude, seen through the stiffest spring, N.
+    pub(super) position_noise_n: f64,
 }
 
 impl Scales {
@@ -346,9 +289,17 @@ impl Scales {
                 .max(1e3 * f64::EPSILON * highest),
             // Round-off of positions, seen through the stiffest spring.
             floor: 1e-10 + 16.0 * f64::EPSILON * highest * stiffest / force_n,
+            position_noise_n: 2.0 * f64::EPSILON * highest * stiffest,
         }
     }
 }
+
+/// What to do about a start that cannot be evaluated.
+pub(super) const OUTSIDE_HELP: &str =
+    "static equilibrium in still air would put it there; give it a `Pose` to start elsewhere";
+/// What to do about a start that is not found.
+pub(super) const NO_EQUILIBRIUM_HELP: &str =
+    "give the bodies a `Pose`, and slack tethers a `start: Straight`";
 
 /// The search left what can be evaluated; the cause is the fault, not the search.
 pub(super) fn fault_on_the_way(world: &World, fault: &Fault) -> SetupError {
@@ -357,11 +308,7 @@ pub(super) fn fault_on_the_way(world: &World, fault: &Fault) -> SetupError {
         format!("entities.{}", name.split('/').next().unwrap_or(""))
     });
     let who = name.map_or_else(String::new, |name| format!("`{name}`: "));
-    SetupError::new(
-        path,
-        format!("{who}{}", fault.message),
-        "static equilibrium in still air would put it there; give it a `Pose` to start elsewhere",
-    )
+    SetupError::new(path, format!("{who}{}", fault.message), OUTSIDE_HELP)
 }
 
 pub(super) fn no_equilibrium(world: &World, entity: Option<Entity>, reason: &str) -> SetupError {
@@ -376,6 +323,6 @@ pub(super) fn no_equilibrium(world: &World, entity: Option<Entity>, reason: &str
     SetupError::new(
         path,
         format!("{name} finds no static equilibrium: {reason}"),
-        "give the bodies a `Pose`, and slack tethers a `start: Straight`",
+        NO_EQUILIBRIUM_HELP,
     )
 }

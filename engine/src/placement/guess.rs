@@ -7,6 +7,7 @@ use aerobot_components::body::Body;
 use aerobot_components::state::{Attitude, Inertia, Mass, Position};
 use aerobot_components::tether::{Attachment, Tether, TetherParts};
 use aerobot_systems::environment::EnvironmentModel;
+use aerobot_systems::instruments::attitude::heading_rad;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
 use glam::{DQuat, DVec3};
@@ -39,7 +40,8 @@ pub(super) fn place_bodies(
         let Some(&first) = waiting.first() else {
             return Ok(floating);
         };
-        let balloon = floating_balloon(world, scene, first)?;
+        let name = world.get::<EntityName>(first).map_or("", |name| &name.0);
+        let balloon = floating_balloon(world, scene, name)?;
         let altitude_m = floating_altitude(world, scene, balloon)?;
         if let Some(mut position) = world.get_mut::<Position>(balloon) {
             position.0 = DVec3::new(0.0, 0.0, altitude_m);
@@ -47,6 +49,16 @@ pub(super) fn place_bodies(
         waiting.retain(|body| *body != balloon);
         floating.push(balloon);
     }
+}
+
+/// Hangs `bodies` anew, all but one that stays where it is and is turned only.
+pub(super) fn hang_anew(world: &mut World, bodies: &[Entity], stays: Option<Entity>) {
+    let lines = lines(world);
+    let bodies_to_place = bodies.iter().copied();
+    let mut waiting = bodies_to_place
+        .filter(|body| Some(*body) != stays)
+        .collect();
+    hang(world, &lines, bodies, &mut waiting);
 }
 
 fn lines(world: &mut World) -> Vec<Line> {
@@ -119,7 +131,7 @@ fn hang(world: &mut World, lines: &[Line], bodies: &[Entity], waiting: &mut Vec<
 }
 
 /// Turns bodies to where plumb lines hold them: upward forces f_i at places r_i make no torque if
-/// sum f_i r_i points up, and the shortest turn there leaves the heading alone.
+/// sum f_i r_i points up; they keep the heading they have.
 fn turn(
     world: &mut World,
     lines: &[Line],
@@ -143,7 +155,8 @@ fn turn(
         }
         let lean = leans.get(body).copied().and_then(DVec3::try_normalize);
         if let (Some(lean), Some(mut attitude)) = (lean, world.get_mut::<Attitude>(*body)) {
-            attitude.0 = DQuat::from_rotation_arc(lean, DVec3::Z);
+            let heading = DQuat::from_rotation_z(heading_rad(attitude.0));
+            attitude.0 = heading * DQuat::from_rotation_arc(lean, DVec3::Z);
         }
     }
 }
@@ -225,9 +238,12 @@ fn net_weight_n(world: &World, body: Entity, altitude_m: f64) -> f64 {
     environment.gravity.acceleration_m_s2(altitude_m) * (mass - density * volume)
 }
 
-/// The balloon that carries the system of `body`.
-fn floating_balloon(world: &World, scene: &Scene, body: Entity) -> Result<Entity, SetupError> {
-    let name = world.get::<EntityName>(body).map_or("", |name| &name.0);
+/// The balloon that carries the system of the body called `name`.
+pub(super) fn floating_balloon(
+    world: &World,
+    scene: &Scene,
+    name: &str,
+) -> Result<Entity, SetupError> {
     let together = tethered_together(scene, name);
     let balloons: Vec<Entity> = together
         .iter()

@@ -4,11 +4,22 @@
 //! Newton's method on the same forces that the run uses, with the air still and everything at rest.
 //! A system that nothing fixes floats: its balloon's altitude is where the vertical force vanishes,
 //! its horizontal place is x = y = 0.
+//!
+//! From there, or from any other start, `settle` finds the steady state in the scene's own wind.
 
+mod buoyant_altitude;
+mod drift;
 mod equilibrium;
 mod floating;
 mod guess;
 mod nodes;
+mod sites;
+mod snapshot;
+mod stability;
+mod steady;
+mod tethered_system;
+
+pub(crate) use steady::{SteadySystem, settle};
 
 use aerobot_components::body::{Anchor, Pose};
 use aerobot_components::state::{
@@ -27,117 +38,15 @@ use crate::evaluation::Evaluation;
 use crate::scene::{Scene, SetupError};
 use crate::world::SceneEntities;
 
-/// Brings a system that an anchor holds to rest in the scene's own wind, from where it stands.
-///
-/// The wind is brought up in parts: a part that Newton's method cannot follow is halved.
-///
-/// # Errors
-/// Which entity finds no rest, or which one no anchor holds.
-pub(crate) fn settle_in_wind(
-    world: &mut World,
-    evaluation: &mut Evaluation,
-    scene: &Scene,
-) -> Result<(), SetupError> {
-    check_held(world, scene)?;
-    let free: Vec<Entity> = world
-        .query_filtered::<Entity, (With<crate::world::Free>, With<Attitude>)>()
-        .iter(world)
-        .collect();
-    let unplaced = Unplaced {
-        bodies: free,
-        floating: Vec::new(),
-    };
-    let wind = world.resource::<EnvironmentModel>().wind.clone();
-    let (mut reached, mut part) = (0.0_f64, 1.0_f64);
-    while reached < 1.0 {
-        let target = (reached + part).min(1.0);
-        let before = Poses::of(world);
-        world.resource_mut::<EnvironmentModel>().wind = wind.scaled(target);
-        let solved = at_rest(world, |world| {
-            equilibrium::solve(world, evaluation, scene, &unplaced)
-        });
-        match solved {
-            Ok(()) => {
-                reached = target;
-                part *= 2.0;
-            }
-            Err(error) if part < SMALLEST_PART_OF_WIND => return Err(error),
-            Err(_) => {
-                before.restore(world);
-                part *= 0.5;
-            }
-        }
-    }
-    world.resource_mut::<EnvironmentModel>().wind = wind;
-    take_as_origin(world);
-    Ok(())
-}
-
-/// A wind that cannot be brought up in parts as small as this has no rest.
-const SMALLEST_PART_OF_WIND: f64 = 1e-3;
-
-/// Every body must be tethered to an anchor: what floats drifts, and has no rest in wind.
-fn check_held(world: &World, scene: &Scene) -> Result<(), SetupError> {
-    let names = world.resource::<SceneEntities>();
-    for (entity, _) in scene.with::<aerobot_components::body::Body>() {
-        let held = crate::balloon_sizing::tethered_together(scene, &entity.name)
-            .into_iter()
-            .filter_map(|name| names.get(name))
-            .any(|id| world.entity(id).contains::<Anchor>());
-        if !held {
-            return Err(SetupError::new(
-                format!("entities.{}", entity.name),
-                format!(
-                    "`{}` is held by no anchor: it drifts with the wind",
-                    entity.name
-                ),
-                "tether it to an entity with `Fixed`",
-            ));
-        }
-    }
-    Ok(())
-}
-
-/// Where everything is, to be returned to.
-struct Poses {
-    positions: Vec<(Entity, Position)>,
-    attitudes: Vec<(Entity, Attitude)>,
-}
-
-impl Poses {
-    fn of(world: &mut World) -> Self {
-        let positions = world
-            .query::<(Entity, &Position)>()
-            .iter(world)
-            .map(|(entity, position)| (entity, *position))
-            .collect();
-        let attitudes = world
-            .query::<(Entity, &Attitude)>()
-            .iter(world)
-            .map(|(entity, attitude)| (entity, *attitude))
-            .collect();
-        Self {
-            positions,
-            attitudes,
-        }
-    }
-
-    fn restore(self, world: &mut World) {
-        for (entity, position) in self.positions {
-            world.entity_mut(entity).insert(position);
-        }
-        for (entity, attitude) in self.attitudes {
-            world.entity_mut(entity).insert(attitude);
-        }
-    }
-}
-
 /// What placement has to know of the scene.
 pub(crate) struct Unplaced {
     /// Bodies without a pose, in the order of the scene.
     bodies: Vec<Entity>,
     /// Bodies among them whose position floats, one for each system that nothing fixes.
     floating: Vec<Entity>,
+    /// The tethers whose nodes find their places; without a list, those that start in equilibrium and
+    /// those that hold one of the bodies.
+    tethers: Option<Vec<Entity>>,
 }
 
 /// Places every body and node of the scene.
@@ -149,7 +58,11 @@ pub(crate) fn place(
     let bodies = bodies_without_pose(world, scene);
     let floating = guess::place_bodies(world, scene, &bodies)?;
     nodes::place_nodes(world);
-    let unplaced = Unplaced { bodies, floating };
+    let unplaced = Unplaced {
+        bodies,
+        floating,
+        tethers: None,
+    };
     in_still_air(world, |world| {
         equilibrium::solve(world, evaluation, scene, &unplaced)
     })?;
@@ -220,6 +133,11 @@ fn place_given_nodes(world: &mut World) {
             }
         }
     }
+}
+
+/// Force in N that the round-off of positions makes of the stiffest segment.
+pub(crate) fn position_noise_n(world: &mut World) -> f64 {
+    equilibrium::Scales::of(world).position_noise_n
 }
 
 /// The placed state is the origin of displacements and the centre of the charts.

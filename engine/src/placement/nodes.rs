@@ -38,7 +38,7 @@ pub(super) fn place_on_line(world: &mut World, tether: Entity) {
 /// As [`place_on_line`], but a line longer than its span hangs in its catenary
 /// z = a cosh((x - x0)/a) + c, with sinh(h/2a)/(h/2a) = sqrt(l^2 - v^2)/h for a line of length l over
 /// the horizontal distance h and the height v, and x0 = h/2 - a artanh(v/l) (Irvine 1981).
-fn place_sagging(world: &mut World, tether: Entity) {
+pub(super) fn place_sagging(world: &mut World, tether: Entity) {
     let Some((from, to, count)) = span(world, tether) else {
         return;
     };
