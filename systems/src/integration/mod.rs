@@ -182,7 +182,7 @@ pub enum StepFailure {
 }
 
 /// The tolerance of a step is this part of the accuracy that is wanted in the end: errors add up.
-const PART_OF_ACCURACY: f64 = 0.3;
+const PART_OF_ACCURACY: f64 = 0.25;
 
 /// No displacement in m and no speed in m/s of a balloon flight comes near this.
 pub const RUNAWAY: f64 = 1e8;

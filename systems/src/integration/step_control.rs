@@ -5,6 +5,10 @@
 const SAFETY: f64 = 0.93;
 const SMALLEST_FACTOR: f64 = 0.2;
 const LARGEST_FACTOR: f64 = 4.0;
+/// A step may be longer than was asked for by this part of itself, if then a whole number reaches a limit.
+const STRETCH: f64 = 0.1;
+/// An error below this says no more of the next than this does: growth after a small step is not held up.
+const LEAST_PREVIOUS_ERROR: f64 = 0.1;
 /// A limit within this many steps is reached in equal ones.
 const FEW_STEPS: f64 = 4.0;
 /// Steps are not cut below this part of the time (or of a second).
@@ -40,7 +44,8 @@ impl StepControl {
     #[must_use]
     pub fn propose(&self, time_s: f64, limit_s: f64) -> (f64, bool) {
         let remaining = limit_s - time_s;
-        let count = (remaining / self.step_s - 1e-9).ceil();
+        let stretch = if self.after_rejection { 1e-9 } else { STRETCH };
+        let count = (remaining / self.step_s - stretch).ceil();
         if count <= 1.0 {
             (remaining, true)
         } else if count <= FEW_STEPS {
@@ -79,7 +84,7 @@ impl StepControl {
         };
         // Nor is its error one to compare the next with.
         if !shortened {
-            self.previous_error = error.max(1e-4);
+            self.previous_error = error.max(LEAST_PREVIOUS_ERROR);
         }
         self.after_rejection = false;
         true

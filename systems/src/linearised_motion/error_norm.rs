@@ -13,7 +13,7 @@ use super::topology::{End, Topology};
 
 /// Errors of nodes count by this beside bodies: they are transverse waves of the tethers, most of which
 /// average out before they reach a body.
-const WEIGHT_OF_NODES: f64 = 0.25;
+const WEIGHT_OF_NODES: f64 = 0.15;
 /// Part of the reference tension that a strain error may be. At a tenth, very
 /// stiff lines slowly gather energy at loose tolerances; at this they do not, and need no more steps.
 const PART_OF_TENSION: f64 = 0.05;
