@@ -8,7 +8,9 @@
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a bench may fail loudly")]
 
-use std::fmt::Write as _;
+#[path = "scenes/one_km_line.rs"]
+mod one_km_line;
+
 use std::path::Path;
 
 use aerobot_engine::plugin::Simulator;
@@ -16,6 +18,7 @@ use aerobot_engine::recording::frame::{MemorySink, NullSink};
 use aerobot_engine::recording::summary::Summary;
 use aerobot_engine::run_folder::thread_cpu_time;
 use aerobot_engine::scene::Scene;
+use one_km_line::one_km_line;
 
 const REPEATS: usize = 5;
 const SIZES: [usize; 7] = [10, 20, 50, 100, 200, 500, 1000];
@@ -41,7 +44,14 @@ fn main() {
     let only_peer = std::env::args().any(|argument| argument == "--peer");
     let lines: Vec<Case> = SIZES
         .iter()
-        .map(|nodes| case("1 km line", *nodes, line(*nodes, 11.5e3), LINE_ACCURACY_M))
+        .map(|nodes| {
+            case(
+                "1 km line",
+                *nodes,
+                one_km_line(*nodes, 11.5e3, 60.0),
+                LINE_ACCURACY_M,
+            )
+        })
         .collect();
     let timed = time(&lines);
     if only_peer {
@@ -61,7 +71,12 @@ fn main() {
     let (first, last) = (&timed[3], &timed[6]);
     let exponent = libm::log10(last.us_per_simulated_s / first.us_per_simulated_s);
     let others = [
-        case("1 km line, EA x 1000", 100, line(100, 11.5e6), 0.01),
+        case(
+            "1 km line, EA x 1000",
+            100,
+            one_km_line(100, 11.5e6, 60.0),
+            0.01,
+        ),
         case("900 m, three gusts", 10, paper("comparison_900m"), 0.001),
         case("9.7 km towline", 100, paper("towing_9700m"), 0.01),
     ];
@@ -166,53 +181,4 @@ fn largest_distance_m(a: &MemorySink, b: &MemorySink) -> f64 {
 fn paper(name: &str) -> String {
     let file = format!("{}/scenes/paper/{name}.ron", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(file).expect("the scene is in the repository")
-}
-
-/// The line of `nodes` nodes and axial stiffness `stiffness_n`, at rest and straight, tilted by 0.3 rad
-/// towards +x, each segment stretched by the weight below it times cos 0.3.
-fn line(nodes: usize, stiffness_n: f64) -> String {
-    let (length_m, line_kg, probe_kg, gravity) = (1000.0, 0.237, 4.0, 8.87);
-    let segments = nodes as f64 + 1.0;
-    let node_kg = line_kg / nodes as f64;
-    let stiffness_n_m = stiffness_n / length_m * segments;
-    let damping_n_s_m = 0.2 * (stiffness_n_m * node_kg).sqrt() / segments;
-    let diameter_m = 0.458e-3;
-    let density_kg_m3 = 2.37e-4 / (0.25 * std::f64::consts::PI * diameter_m * diameter_m);
-    let (sin, cos) = libm::sincos(0.3);
-    let mut along_m = 0.0;
-    let mut positions = String::new();
-    for number in 1..=nodes + 1 {
-        let below_kg = probe_kg + node_kg * (nodes + 1 - number) as f64;
-        along_m += length_m / segments + below_kg * gravity * cos / stiffness_n_m;
-        if number <= nodes {
-            let _ = write!(positions, "({}, 0, {}),", along_m * sin, -along_m * cos);
-        }
-    }
-    let (x_m, z_m) = (along_m * sin, -along_m * cos);
-    format!(
-        r#"(
-            name: "line",
-            environment: (
-                atmosphere: Uniform(density_kg_m3: 1), wind: [Uniform(velocity_m_s: (4, 3, 0))],
-            ),
-            entities: {{
-                "top": (Fixed: (position_m: (0, 0, 0))),
-                "probe": (
-                    Body: (mass_kg: {probe_kg}),
-                    Sphere: (radius_m: 0.05),
-                    Drag: Constant(coefficient: 0.47),
-                    Pose: (position_m: ({x_m}, 0, {z_m})),
-                ),
-                "line": (Tether: (
-                    from: ("top", Centre), to: ("probe", Centre),
-                    length_m: {length_m}, nodes: {nodes},
-                    diameter_m: {diameter_m}, density_kg_m3: {density_kg_m3},
-                    axial_stiffness_n: {stiffness_n}, damping_n_s_m: {damping_n_s_m},
-                    lumping: Interior, drag: (normal: 1, tangential: 0.03),
-                    start: Positions([{positions}]),
-                )),
-            }},
-            run: (duration_s: 60, output_every_s: 60),
-        )"#
-    )
 }

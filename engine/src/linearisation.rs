@@ -192,7 +192,7 @@ impl Linearisation {
     /// The largest error of positions and of first-order states over the tolerance.
     pub(crate) fn position_error(&self, error: &[f64], tolerance_m: f64) -> (f64, usize) {
         let topology = self.system.topology();
-        let mut largest = position_error(topology, error);
+        let mut largest = position_error(topology, error, self.has_slack);
         let first = 2 * topology.coordinates;
         for (k, (error, scale)) in error[first..]
             .iter()

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 
 use aerobot::engine::plugin::Simulator;
 use aerobot::engine::recording::frame::MemorySink;
+use aerobot::engine::recording::summary::Summary;
 use aerobot::engine::scene::Scene;
+use glam::DVec3;
 
 /// A scene of the repository.
 pub(crate) fn scene_file(name: &str) -> PathBuf {
@@ -49,13 +51,18 @@ pub(crate) fn fly_scene(name: &str, overrides: &[&str]) -> MemorySink {
 
 /// Flies a scene to its end.
 pub(crate) fn run(simulator: &Simulator, scene: &Scene) -> MemorySink {
+    run_for_summary(simulator, scene).0
+}
+
+/// Flies a scene to its end, for its summary too.
+fn run_for_summary(simulator: &Simulator, scene: &Scene) -> (MemorySink, Summary) {
     let mut simulation = simulator
         .build(scene)
         .unwrap_or_else(|error| panic!("{error}"));
     let mut results = MemorySink::default();
     let summary = simulation.run(&mut results, &mut |_| {});
     assert_eq!(summary.outcome, "done", "{:?}", summary.stopped);
-    results
+    (results, summary)
 }
 
 /// `actual` must be `expected` to `tolerance`, relative; prints how well it is.
@@ -69,4 +76,38 @@ pub(crate) fn assert_relative(what: &str, actual: f64, expected: f64, tolerance:
 pub(crate) fn assert_below(what: &str, error: f64, bound: f64) {
     println!("{what}: {error:.1e}, allowed {bound:.1e}");
     assert!(error < bound, "{what}: {error:.3e}, allowed {bound:.1e}");
+}
+
+/// Where an entity is at a time, m.
+pub(crate) fn position(results: &MemorySink, entity: &str, time_s: f64) -> DVec3 {
+    let frame = results
+        .frames
+        .iter()
+        .find(|frame| (frame.time_s - time_s).abs() < 1e-9)
+        .unwrap_or_else(|| panic!("nothing was recorded at {time_s} s"));
+    frame
+        .states
+        .iter()
+        .find(|row| &*row.entity == entity)
+        .unwrap_or_else(|| panic!("`{entity}` was not recorded"))
+        .position_m
+}
+
+/// Largest distance of anything from where it is in `other`, m.
+pub(crate) fn largest_distance_m(results: &MemorySink, other: &MemorySink) -> f64 {
+    assert_eq!(results.frames.len(), other.frames.len());
+    let pairs = results.frames.iter().zip(&other.frames);
+    pairs
+        .flat_map(|(a, b)| {
+            assert_eq!(a.states.len(), b.states.len());
+            a.states.iter().zip(&b.states)
+        })
+        .map(|(a, b)| (a.position_m - b.position_m).length())
+        .fold(0.0, f64::max)
+}
+
+/// Flies a scene and gives its summary too.
+pub(crate) fn summary_of(text: &str, overrides: &[&str]) -> (MemorySink, Summary) {
+    let simulator = Simulator::new();
+    run_for_summary(&simulator, &load(&simulator, text, overrides))
 }

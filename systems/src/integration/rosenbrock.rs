@@ -72,6 +72,8 @@ const FIRST_STEP_S: f64 = 0.01;
 /// In steps up to this, s, the error of each counts, for in fast motion errors of either sign cancel; in
 /// longer ones, of a motion that creeps, they add up, and the error per this time counts.
 const PER_STEP_UP_TO_S: f64 = 0.5;
+/// From this accuracy on, m, all of the strain error that keeps a line sound is allowed.
+const WHOLE_STRAIN_FROM_M: f64 = 0.01;
 /// Part of the kinetic energy that may come from nowhere in one step.
 const ENERGY_GAIN: f64 = 1e-3;
 /// After a step that gained energy, the next is this part of it.
@@ -109,14 +111,12 @@ impl Tableau {
 
 fn invert_lower(matrix: &[[f64; STAGES]; STAGES]) -> [[f64; STAGES]; STAGES] {
     let mut inverse = [[0.0; STAGES]; STAGES];
-    for column in 0..STAGES {
-        for row in column..STAGES {
+    for (row, factors) in matrix.iter().enumerate() {
+        inverse[row] = std::array::from_fn(|column| {
             let one = if row == column { 1.0 } else { 0.0 };
-            let sum: f64 = (column..row)
-                .map(|k| matrix[row][k] * inverse[k][column])
-                .sum();
-            inverse[row][column] = (one - sum) / matrix[row][row];
-        }
+            let sum: f64 = (0..row).map(|k| factors[k] * inverse[k][column]).sum();
+            (one - sum) / factors[row]
+        });
     }
     inverse
 }
@@ -261,15 +261,16 @@ impl Rosenbrock {
         end_s: f64,
     ) -> Result<Verdict, StepFailure> {
         let h = end_s - trajectory.time_s;
-        let tolerance_m = tolerance_m * (PER_STEP_UP_TO_S / h).min(1.0);
-        let mut largest = equations.position_error(&self.error, tolerance_m);
+        let per_time_m = tolerance_m * (PER_STEP_UP_TO_S / h).min(1.0);
+        let mut largest = equations.position_error(&self.error, per_time_m);
         let strain = equations.strain_error(&self.error, &self.increment);
+        let strain = (strain.0 / strain_allowance(tolerance_m), strain.1);
         if strain.0 > largest.0 {
             largest = strain;
         }
         let (error, index) = largest;
-        // Not below: what is not a number is not accurate.
-        if !(error <= 1.0) {
+        // What is not a number is not accurate.
+        if error.is_nan() || error > 1.0 {
             return Ok(Verdict::Inaccurate(error, index));
         }
         self.evaluate_trial(equations, trajectory, end_s)?;
@@ -355,6 +356,13 @@ impl Rosenbrock {
     }
 }
 
+/// Part of the allowed strain error at this tolerance of positions (m): all of it from an accuracy of 1 cm
+/// on, less below, so that a tighter accuracy is had of the stiffest line too.
+fn strain_allowance(tolerance_m: f64) -> f64 {
+    let ratio = tolerance_m / (PART_OF_ACCURACY * WHOLE_STRAIN_FROM_M);
+    libm::cbrt(ratio * ratio).min(1.0)
+}
+
 /// What becomes of a step that was tried.
 enum Verdict {
     /// It is taken; its scaled error.
@@ -423,5 +431,57 @@ fn add_all(out: &mut [f64], start: &[f64], factors: &[f64; STAGES], u: &[Vec<f64
             }
         }
         _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn dot(a: &[f64; STAGES], b: &[f64; STAGES]) -> f64 {
+        a.iter().zip(b).map(|(a, b)| a * b).sum()
+    }
+
+    fn times(matrix: &[[f64; STAGES]; STAGES], vector: &[f64; STAGES]) -> [f64; STAGES] {
+        matrix.map(|row| dot(&row, vector))
+    }
+
+    /// The conditions for order 3 with any matrix A (Hairer and Wanner 1996, IV.7, W-methods), and those
+    /// for order 2 of the embedded solution.
+    #[test]
+    fn the_tableau_has_order_three_with_any_jacobian() {
+        let one = [1.0; STAGES];
+        let (alpha, gamma) = (times(&ALPHA, &one), times(&COUPLING, &one));
+        let square = alpha.map(|a| a * a);
+        let conditions = [
+            (one, 1.0),
+            (alpha, 0.5),
+            (gamma, 0.0),
+            (square, 1.0 / 3.0),
+            (times(&ALPHA, &alpha), 1.0 / 6.0),
+            (times(&ALPHA, &gamma), 0.0),
+            (times(&COUPLING, &alpha), 0.0),
+            (times(&COUPLING, &gamma), 0.0),
+        ];
+        for (number, (vector, value)) in conditions.iter().enumerate() {
+            let error = (dot(&B, vector) - value).abs();
+            assert!(error < 1e-14, "condition {number}: {error:e}");
+        }
+        for (vector, value) in &conditions[..3] {
+            assert!((dot(&B_EMBEDDED, vector) - value).abs() < 1e-14);
+        }
+    }
+
+    /// Stiffly accurate: the solution is the last stage, so that R at infinity is 0.
+    #[test]
+    fn the_tableau_is_stiffly_accurate() {
+        for ((b, alpha), coupling) in B.iter().zip(&ALPHA[3]).zip(&COUPLING[3]) {
+            assert!((b - alpha - coupling).abs() < 1e-15);
+        }
+        let tableau = Tableau::new();
+        for (a, m) in tableau.a[3].iter().zip(&tableau.m) {
+            assert!((a - m).abs() < 1e-14 || *m == tableau.m[3]);
+        }
+        assert!((tableau.m[3] - 1.0).abs() < 1e-14);
     }
 }

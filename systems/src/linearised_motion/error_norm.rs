@@ -12,15 +12,16 @@ use super::derivatives::{Derivatives, LinearEnd, LinearSegment};
 use super::topology::{End, Topology};
 
 /// Errors of nodes count by this beside bodies: they are transverse waves of the tethers, most of which
-/// average out before they reach a body.
+/// average out before they reach a body. Not so where something is slack: a fold does not average out.
 const WEIGHT_OF_NODES: f64 = 0.15;
 /// Part of the reference tension that a strain error may be. At a tenth, very
 /// stiff lines slowly gather energy at loose tolerances; at this they do not, and need no more steps.
 const PART_OF_TENSION: f64 = 0.05;
 
-/// The largest error of a position in `e`, weighed, in m, and its place in the state.
+/// The largest error of a position in `e`, weighed, in m, and its place in the state; `has_slack` says whether
+/// something is slack.
 #[must_use]
-pub fn position_error(topology: &Topology, e: &[f64]) -> (f64, usize) {
+pub fn position_error(topology: &Topology, e: &[f64], has_slack: bool) -> (f64, usize) {
     let mut largest = (0.0, 0);
     let mut consider = |square: f64, index: usize| {
         if square > largest.0 || square.is_nan() {
@@ -33,7 +34,7 @@ pub fn position_error(topology: &Topology, e: &[f64]) -> (f64, usize) {
         let turn = DVec3::from_slice(&e[at + 3..]).length_squared();
         consider(body.arm_m * body.arm_m * turn, at + 3);
     }
-    let weight = if topology.bodies.is_empty() {
+    let weight = if has_slack || topology.bodies.is_empty() {
         1.0
     } else {
         WEIGHT_OF_NODES
