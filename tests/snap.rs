@@ -1,7 +1,11 @@
 //! A line that hangs slack and snaps taut, against a separate program (explicit, of eighth order, in 80-bit
 //! arithmetic, with every change from slack to taut located).
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on fails"
+)]
 
 mod flight;
 

@@ -303,7 +303,6 @@ fn the_towline_finds_its_equilibrium_and_keeps_it() {
     let _ = simulation.run(&mut rest, &mut |_| {});
     let start = MemorySink {
         frames: vec![rest.frames[0].clone(); rest.frames.len()],
-        ..MemorySink::default()
     };
     assert_below(
         "600 s from the equilibrium",
@@ -320,11 +319,9 @@ fn the_towline_finds_its_equilibrium_and_keeps_it() {
     );
     let last = MemorySink {
         frames: vec![flown.frames[flown.frames.len() - 1].clone()],
-        ..MemorySink::default()
     };
     let first = MemorySink {
         frames: vec![rest.frames[0].clone()],
-        ..MemorySink::default()
     };
     assert_below(
         "20 000 s from straight down",
