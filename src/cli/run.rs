@@ -95,8 +95,14 @@ fn line(summary: &Summary, timing: &Timing, folder: &Path) -> String {
         (Some(step_s), Some(segment)) => format!(", stable step {step_s:.3e} s (`{segment}`)"),
         _ => String::new(),
     };
+    // What `Auto` chose.
+    let methods = match summary.implicit_steps {
+        0 => " (all explicit)".to_owned(),
+        implicit if implicit == summary.steps => " (all implicit)".to_owned(),
+        implicit => format!(" ({implicit} implicit)"),
+    };
     format!(
-        "{}: {} s simulated in {:.3} s ({:.0} times real time); {}, {} steps, {} rejected, \
+        "{}: {} s simulated in {:.3} s ({:.0} times real time); {}, {} steps{methods}, {} rejected, \
          {} evaluations{stable}; results in `{}`",
         summary.scene,
         summary.simulated_s,
