@@ -55,7 +55,7 @@ pub(crate) fn run(simulator: &Simulator, scene: &Scene) -> MemorySink {
 }
 
 /// Flies a scene to its end, for its summary too.
-fn run_for_summary(simulator: &Simulator, scene: &Scene) -> (MemorySink, Summary) {
+pub(crate) fn run_for_summary(simulator: &Simulator, scene: &Scene) -> (MemorySink, Summary) {
     let mut simulation = simulator
         .build(scene)
         .unwrap_or_else(|error| panic!("{error}"));
