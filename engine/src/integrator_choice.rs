@@ -26,6 +26,15 @@ pub(crate) struct Choice {
     pub(crate) description: String,
 }
 
+/// Whether the method asks for the linearised motion, or measures its errors with it.
+pub(crate) fn is_linearised(integrator: &IntegratorSpec) -> bool {
+    match integrator {
+        IntegratorSpec::Auto { .. } | IntegratorSpec::Implicit { .. } => true,
+        IntegratorSpec::Fixed { method, .. } => *method == FixedMethod::Rosenbrock,
+        IntegratorSpec::Adaptive { .. } => false,
+    }
+}
+
 /// The method that the scene asks for; `scales` has the length of the state.
 ///
 /// # Errors

@@ -72,19 +72,26 @@ pub(crate) struct Linearisation {
 }
 
 impl Linearisation {
-    /// For a world whose state has been laid out.
+    /// For a world whose state has been laid out; empty where the integrator never asks for it.
     pub(crate) fn new(
         world: &mut World,
         schedule: Schedule,
         state: &mut StateVector,
+        is_needed: bool,
     ) -> Result<Self, SetupError> {
         let layout = state.layout();
         let first_order_scales = state.error_scales(world).split_off(2 * layout.coordinates);
-        let topology = topology(world, layout)?;
+        let topology = if is_needed {
+            topology(world, layout)?
+        } else {
+            Topology::default()
+        };
         let mut derivatives = Derivatives::new(&topology);
         let mut masses = world.query_filtered::<(&TetherPoint, &Mass), With<TetherNode>>();
         for (point, mass) in masses.iter(world) {
-            derivatives.points[point.index].mass_kg = mass.0;
+            if let Some(point) = derivatives.points.get_mut(point.index) {
+                point.mass_kg = mass.0;
+            }
         }
         derivatives.gravity_m_s2 = match world.resource::<EnvironmentModel>().gravity {
             Gravity::Constant(acceleration) => acceleration,

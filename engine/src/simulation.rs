@@ -16,7 +16,7 @@ use crate::builtin::recorder::Recorder;
 use crate::evaluation::{
     Evaluation, Implicit, Integration, IntegrationSlot, WorldEquations, with_integration,
 };
-use crate::integrator_choice::{Choice, choose_integrator};
+use crate::integrator_choice::{Choice, choose_integrator, is_linearised};
 use crate::linearisation::Linearisation;
 use crate::placement;
 use crate::plugin::Simulator;
@@ -78,8 +78,13 @@ impl Simulator {
         let derivatives =
             schedule::build(Linearise, &LINEARISE, self, scene, &mut world).map_err(unordered)?;
         let implicit = Implicit {
-            linearisation: Linearisation::new(&mut world, derivatives, &mut evaluation.state)
-                .map_err(|error| scene.refuse(error))?,
+            linearisation: Linearisation::new(
+                &mut world,
+                derivatives,
+                &mut evaluation.state,
+                is_linearised(&scene.run.integrator),
+            )
+            .map_err(|error| scene.refuse(error))?,
             energy: world.register_system(mechanical_energy),
         };
         let scales = evaluation.state.error_scales(&mut world);
