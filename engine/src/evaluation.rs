@@ -11,17 +11,17 @@ use aerobot_systems::integration::{
     Equations, Integrator, MechanicalEnergy, StepFailure, Trajectory,
 };
 use bevy_ecs::resource::Resource;
-use bevy_ecs::schedule::Schedule;
 use bevy_ecs::system::SystemId;
 use bevy_ecs::world::World;
 
 use crate::linearisation::Linearisation;
+use crate::sequence::Sequence;
 use crate::world::{Discontinuity, Edges};
 
 /// The Evaluate schedule with what carries states to and from it.
 pub struct Evaluation {
     /// The Evaluate schedule.
-    pub(crate) schedule: Schedule,
+    pub(crate) schedule: Sequence,
     /// Gathers and scatters states.
     pub(crate) state: StateVector,
 }

@@ -13,6 +13,7 @@ pub mod recording;
 pub mod run_folder;
 pub mod scene;
 pub mod schedule;
+mod sequence;
 pub mod simulation;
 pub mod stable_step;
 mod stopping;

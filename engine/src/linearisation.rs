@@ -22,11 +22,11 @@ use aerobot_systems::linearised_motion::topology::{BodySite, End, Line, Topology
 use bevy_ecs::component::Component;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::query::{QueryState, With, Without};
-use bevy_ecs::schedule::Schedule;
 use bevy_ecs::world::World;
 use glam::DMat3;
 
 use crate::scene::SetupError;
+use crate::sequence::Sequence;
 
 /// Place of a free body among those of the linearised motion.
 #[derive(Component, Clone, Copy, Debug)]
@@ -55,7 +55,7 @@ type Bodies = (
 
 /// The Linearise schedule with what carries its result to the solver.
 pub(crate) struct Linearisation {
-    schedule: Schedule,
+    schedule: Sequence,
     system: ShiftedSystem,
     derivatives: Derivatives,
     /// Tensions below this say nothing of a strain error, N.
@@ -75,7 +75,7 @@ impl Linearisation {
     /// For a world whose state has been laid out; empty where the integrator never asks for it.
     pub(crate) fn new(
         world: &mut World,
-        schedule: Schedule,
+        schedule: Sequence,
         state: &mut StateVector,
         is_needed: bool,
     ) -> Result<Self, SetupError> {

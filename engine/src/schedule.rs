@@ -26,6 +26,7 @@ use bevy_ecs::world::World;
 
 use crate::plugin::Simulator;
 use crate::scene::Scene;
+use crate::sequence::Sequence;
 
 /// A place in the order of a step.
 #[derive(Clone, Copy, Debug, Hash, PartialEq, Eq, SystemSet)]
@@ -95,18 +96,28 @@ pub(crate) struct Registration {
     pub(crate) add: Box<dyn Fn(&mut Schedule, Registered) + Send + Sync>,
 }
 
-/// Builds the schedule `label` of `phases` from all registrations that `scene` needs, checked for
+/// The systems of the schedule `label` of `phases` from all registrations that `scene` needs, checked for
 /// ambiguities.
 ///
 /// # Errors
 /// The text of an ambiguity or of a cycle.
 pub(crate) fn build(
-    label: impl ScheduleLabel,
+    label: impl ScheduleLabel + Clone,
     phases: &[Phase],
     simulator: &Simulator,
     scene: &Scene,
     world: &mut World,
-) -> Result<Schedule, String> {
+) -> Result<Sequence, String> {
+    Sequence::new(|| assemble(label.clone(), phases, simulator, scene), world)
+}
+
+/// The schedule, not yet ordered.
+fn assemble(
+    label: impl ScheduleLabel,
+    phases: &[Phase],
+    simulator: &Simulator,
+    scene: &Scene,
+) -> Schedule {
     let mut schedule = Schedule::new(label);
     schedule.set_build_settings(ScheduleBuildSettings {
         ambiguity_detection: LogLevel::Error,
@@ -128,8 +139,5 @@ pub(crate) fn build(
             before = Some(set);
         }
     }
-    match schedule.initialize(world) {
-        Ok(_) => Ok(schedule),
-        Err(error) => Err(error.to_string(schedule.graph(), world)),
-    }
+    schedule
 }

@@ -8,7 +8,6 @@ use aerobot_systems::fault::{Fault, FaultSlot};
 use aerobot_systems::instruments::energy_guard::mechanical_energy;
 use aerobot_systems::integration::{Cost, Equations, StepFailure, Trajectory};
 use bevy_ecs::query::QueryState;
-use bevy_ecs::schedule::Schedule;
 use bevy_ecs::world::World;
 
 use crate::builtin::channels::find_supports;
@@ -24,6 +23,7 @@ use crate::recording::frame::ResultSink;
 use crate::recording::summary::{Stop, Summary};
 use crate::scene::{Scene, SceneError, SetupError};
 use crate::schedule::{self, EVALUATE, Evaluate, LINEARISE, Linearise, STEP, Step};
+use crate::sequence::Sequence;
 use crate::stable_step::{self, StableStep};
 use crate::stopping::owner_name;
 use crate::world::{Edges, build_world, lay_out_state};
@@ -31,7 +31,7 @@ use crate::world::{Edges, build_world, lay_out_state};
 /// A built simulation.
 pub struct Simulation {
     pub(crate) world: World,
-    step: Schedule,
+    step: Sequence,
     samplings: QueryState<&'static Sampling>,
     duration_s: f64,
     pub(crate) stable_step: StableStep,

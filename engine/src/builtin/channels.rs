@@ -21,7 +21,7 @@ use aerobot_systems::instruments::energy::{
 use aerobot_systems::instruments::swing::{SWING, SWING_X, SWING_Y, Support, swing};
 use bevy_ecs::entity::Entity;
 use bevy_ecs::schedule::IntoScheduleConfigs;
-use bevy_ecs::system::Res;
+use bevy_ecs::system::{IntoSystem, Res};
 use bevy_ecs::world::World;
 
 use super::recorder::Recorder;
@@ -45,14 +45,12 @@ impl Plugin for ChannelsPlugin {
             .add_setup(set_up)
             .add_systems_if(Phase::Dynamics, records_energy, || nonconservative_power)
             .add_systems(Phase::Observe, || {
-                (
-                    accelerate_attachments,
-                    airspeed,
-                    attitude,
-                    swing,
-                    attachment_tension,
-                )
-                    .chain()
+                // One system after the other, but one to ask whether it is due.
+                accelerate_attachments
+                    .pipe(airspeed)
+                    .pipe(attitude)
+                    .pipe(swing)
+                    .pipe(attachment_tension)
                     .run_if(channels_due)
             })
             .add_systems_if(Phase::Observe, records_energy, || {

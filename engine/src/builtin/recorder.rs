@@ -12,7 +12,7 @@ use aerobot_systems::instruments::channel_log::ChannelLog;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::resource::Resource;
 use bevy_ecs::schedule::IntoScheduleConfigs;
-use bevy_ecs::system::{Query, Res, ResMut};
+use bevy_ecs::system::{IntoSystem, Query, Res, ResMut};
 use bevy_ecs::world::World;
 
 use crate::plugin::{Plugin, Simulator};
@@ -30,7 +30,7 @@ impl Plugin for RecorderPlugin {
             .add_setup(set_up)
             .add_systems(Phase::Record, || track_largest_tension)
             .add_systems(Phase::Record, || {
-                (record_states, record_segments).chain().run_if(rows_due)
+                record_states.pipe(record_segments).run_if(rows_due)
             })
             .add_systems(Phase::Record, || record_channels);
     }
