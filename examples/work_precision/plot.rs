@@ -15,7 +15,7 @@ const LEGEND_HEIGHT: u32 = 46;
 /// Panels in a row.
 const COLUMNS: usize = 3;
 /// Half the size of a marker, pixels.
-const MARKER: i32 = 4;
+const MARKER: i32 = 3;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Panel<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
@@ -120,14 +120,17 @@ fn draw_method(chart: &mut Panel<'_, '_>, method: Method, points: &[(f64, f64)])
         let fill = style.filled();
         match method {
             Method::Auto => chart.draw_series([place + Circle::new((0, 0), MARKER, fill)])?,
+            // Open and larger, for it often lies on that of `Auto`.
             Method::Implicit => chart.draw_series([place
-                + Rectangle::new([(-MARKER, -MARKER), (MARKER, MARKER)], WHITE.filled())
-                + Rectangle::new([(-MARKER, -MARKER), (MARKER, MARKER)], style)])?,
+                + Rectangle::new(
+                    [(-MARKER - 2, -MARKER - 2), (MARKER + 2, MARKER + 2)],
+                    style.stroke_width(1),
+                )])?,
             Method::DormandPrince => {
-                chart.draw_series([place + TriangleMarker::new((0, 0), MARKER + 1, fill)])?
+                chart.draw_series([place + TriangleMarker::new((0, 0), MARKER + 2, fill)])?
             }
             Method::RungeKutta4 => {
-                chart.draw_series([place + Cross::new((0, 0), MARKER, style)])?
+                chart.draw_series([place + Cross::new((0, 0), MARKER + 1, style)])?
             }
         };
     }
