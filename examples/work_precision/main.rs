@@ -36,7 +36,8 @@ fn main() {
     plot::draw(&docs.join("work_precision.svg"), &panels)
         .unwrap_or_else(|error| panic!("the picture: {error}"));
     for error_m in [1e-2, 1e-3] {
-        print(&panels, error_m);
+        print(&panels, "bodies", |row| row.error_bodies_m, error_m);
+        print(&panels, "nodes", |row| row.error_nodes_m, error_m);
     }
 }
 
@@ -61,16 +62,18 @@ fn by_case(rows: &[Row]) -> Vec<Vec<&Row>> {
     panels
 }
 
-/// What each method takes to keep bodies within `error_m`, m, and in times of the least.
-fn print(panels: &[Vec<&Row>], error_m: f64) {
+/// What each method takes to keep the error `of` a row, that of `whose`, within `error_m`, m, and in times of the least.
+fn print(panels: &[Vec<&Row>], whose: &str, of: fn(&Row) -> f64, error_m: f64) {
     println!();
-    println!("CPU time of a simulated second (us), and in times of the least, at {error_m} m");
+    println!(
+        "CPU time of a simulated second (us), and in times of the least: {whose} within {error_m} m"
+    );
     println!();
     let names = Method::ALL.map(Method::name).join(" | ");
     println!("| case | {names} |");
     println!("|---|---|---|---|---|");
     for panel in panels {
-        let costs = Method::ALL.map(|method| cost_us(panel, method, error_m));
+        let costs = Method::ALL.map(|method| cost_us(panel, method, of, error_m));
         let known = costs.iter().flatten().map(|cost| cost.0);
         let least = known.fold(f64::INFINITY, f64::min);
         let cells = costs.map(|cost| match cost {

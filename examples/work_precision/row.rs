@@ -113,25 +113,29 @@ impl Row {
     }
 }
 
-/// CPU time per simulated second, us, with which `method` keeps bodies of a case within `error_m` (m):
+/// CPU time per simulated second, us, with which `method` keeps the error `of` a row within `error_m` (m):
 /// between two settings along the straight line that joins them in the picture; the flag says that its
 /// cheapest setting is more accurate than that already. `None` if no setting is that accurate.
-pub(crate) fn cost_us(rows: &[&Row], method: Method, error_m: f64) -> Option<(f64, bool)> {
+pub(crate) fn cost_us(
+    rows: &[&Row],
+    method: Method,
+    of: fn(&Row) -> f64,
+    error_m: f64,
+) -> Option<(f64, bool)> {
     let mut rows: Vec<&&Row> = rows
         .iter()
-        .filter(|row| row.method == method && row.error_bodies_m > 0.0)
+        .filter(|row| row.method == method && of(row) > 0.0)
         .collect();
     rows.sort_by(|a, b| {
         a.cpu_us_per_simulated_s
             .total_cmp(&b.cpu_us_per_simulated_s)
     });
-    let right = rows.iter().position(|row| row.error_bodies_m <= error_m)?;
+    let right = rows.iter().position(|row| of(row) <= error_m)?;
     let (fine, Some(coarse)) = (rows[right], right.checked_sub(1).map(|left| rows[left])) else {
         return Some((rows[right].cpu_us_per_simulated_s, true));
     };
     let log = |x: f64| libm::log(x);
-    let part = (log(coarse.error_bodies_m) - log(error_m))
-        / (log(coarse.error_bodies_m) - log(fine.error_bodies_m));
+    let part = (log(of(coarse)) - log(error_m)) / (log(of(coarse)) - log(of(fine)));
     let (from, to) = (
         log(coarse.cpu_us_per_simulated_s),
         log(fine.cpu_us_per_simulated_s),
