@@ -107,6 +107,17 @@ impl BodyBlock {
         }
     }
 
+    /// With rows and columns exchanged.
+    #[must_use]
+    pub fn transposed(&self) -> Self {
+        Self {
+            linear: self.linear.transpose(),
+            linear_by_turn: self.turn_by_linear.transpose(),
+            turn_by_linear: self.linear_by_turn.transpose(),
+            turn: self.turn.transpose(),
+        }
+    }
+
     /// Adds `scale` times `other`.
     pub fn add(&mut self, other: &Self, scale: f64) {
         self.linear += other.linear * scale;

@@ -14,6 +14,7 @@ pub mod body_block;
 pub mod chain;
 pub mod derivatives;
 pub mod error_norm;
+pub mod few_bodies;
 pub mod shifted_system;
 pub mod symmetric3;
 pub mod topology;

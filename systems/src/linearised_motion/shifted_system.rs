@@ -5,6 +5,7 @@ use glam::{DMat3, DVec3};
 use super::body_block::{BodyBlock, Twist};
 use super::chain::Chain;
 use super::derivatives::Derivatives;
+use super::few_bodies::FewBodies;
 use super::symmetric3::Symmetric3;
 use super::topology::{End, Topology};
 use crate::nonlinear_solver::block_elimination::Elimination;
@@ -44,10 +45,23 @@ pub struct ShiftedSystem {
     /// Diagonal blocks of the nodes without those of the segments.
     own: Vec<Symmetric3>,
     chains: Vec<Chain>,
+    /// Of the bodies: blocks on the diagonal by body, and beside it by line, of the motion of the `from`
+    /// end on the body at the `to` end.
+    diagonal: Vec<BodyBlock>,
+    beside: Vec<BodyBlock>,
+    /// Solves for one or two bodies.
+    few: Option<FewBodies>,
+    /// Solves for more, and where the former cannot.
     matrix: BlockMatrix,
     elimination: Elimination,
+    /// Whether the factors are in `few`.
+    are_few: bool,
     /// Of the nodes, by point.
     loads: Vec<DVec3>,
+    /// g m of the nodes, by point.
+    inertia: Vec<f64>,
+    /// Whether a node has a stiffness of its own.
+    has_own_stiffness: bool,
     /// Of the bodies.
     motions: Vec<Twist>,
     rhs: Vec<f64>,
@@ -80,8 +94,14 @@ impl ShiftedSystem {
             chains,
             elimination: Elimination::analyse(&pattern),
             rhs: vec![0.0; pattern.dimension()],
+            diagonal: vec![BodyBlock::ZERO; topology.bodies.len()],
+            beside: vec![BodyBlock::ZERO; topology.lines.len()],
+            few: FewBodies::new(&topology.bodies),
             matrix: BlockMatrix::new(pattern),
+            are_few: false,
             loads: vec![DVec3::ZERO; topology.points],
+            inertia: vec![0.0; topology.points],
+            has_own_stiffness: false,
             motions: vec![Twist::default(); topology.bodies.len()],
             topology,
         }
@@ -116,19 +136,21 @@ impl ShiftedSystem {
             let [from, to] = &derivatives.ends[index];
             if let End::OnBody(body) = line.from {
                 let block = BodyBlock::between(&from.place, left.from_from, &from.place);
-                add_block(&mut self.matrix, body, body, &block);
+                self.diagonal[body].add(&block, 1.0);
             }
             if let End::OnBody(body) = line.to {
                 let block = BodyBlock::between(&to.place, left.to_to, &to.place);
-                add_block(&mut self.matrix, body, body, &block);
+                self.diagonal[body].add(&block, 1.0);
             }
-            if let (End::OnBody(a), End::OnBody(b)) = (line.from, line.to) {
-                let block = BodyBlock::between(&to.place, left.to_from, &from.place);
-                add_block(&mut self.matrix, b, a, &block);
-                let block = BodyBlock::between(&from.place, left.to_from.transpose(), &to.place);
-                add_block(&mut self.matrix, a, b, &block);
+            if let (End::OnBody(_), End::OnBody(_)) = (line.from, line.to) {
+                self.beside[index] = BodyBlock::between(&to.place, left.to_from, &from.place);
             }
         }
+        self.are_few = self.factorise_few();
+        if self.are_few {
+            return Ok(());
+        }
+        self.set_matrix();
         self.elimination
             .factorise(&self.matrix)
             .map_err(|singular| NotSolvable {
@@ -158,20 +180,59 @@ impl ShiftedSystem {
             *block = Symmetric3::along(segment.direction, along + g * c, all)
                 .plus_scaled(segment.drag, -0.25 * g);
         }
-        for (own, point) in self.own.iter_mut().zip(&derivatives.points) {
+        self.has_own_stiffness = false;
+        let own = self.own.iter_mut().zip(&mut self.inertia);
+        for ((own, inertia), point) in own.zip(&derivatives.points) {
             *own = Symmetric3::identity(point.mass_kg)
                 .plus_scaled(point.damping, g)
                 .plus_scaled(point.stiffness, g2);
+            *inertia = g * point.mass_kg;
+            self.has_own_stiffness |= point.stiffness != Symmetric3::default();
         }
     }
 
     fn set_bodies(&mut self, derivatives: &Derivatives) {
-        self.matrix.clear();
-        for (index, body) in derivatives.bodies.iter().enumerate() {
-            let mut block = body.mass;
+        for (block, body) in self.diagonal.iter_mut().zip(&derivatives.bodies) {
+            *block = body.mass;
             block.add(&body.damping, self.g);
             block.add(&body.stiffness, self.g * self.g);
-            add_block(&mut self.matrix, index, index, &block);
+        }
+    }
+
+    /// Factorises the blocks of the bodies if these are few; whether that was possible.
+    fn factorise_few(&mut self) -> bool {
+        let Some(few) = &mut self.few else {
+            return false;
+        };
+        few.clear();
+        let (pattern, bodies) = (self.matrix.pattern(), &self.topology.bodies);
+        for (body, block) in self.diagonal.iter().enumerate() {
+            let (at, turns) = (pattern.offset(body), bodies[body].turns);
+            few.add((at, at), (turns, turns), block);
+        }
+        for (line, block) in self.topology.lines.iter().zip(&self.beside) {
+            let (End::OnBody(a), End::OnBody(b)) = (line.from, line.to) else {
+                continue;
+            };
+            let (at_a, at_b) = (pattern.offset(a), pattern.offset(b));
+            let (a_turns, b_turns) = (bodies[a].turns, bodies[b].turns);
+            few.add((at_b, at_a), (b_turns, a_turns), block);
+            few.add((at_a, at_b), (a_turns, b_turns), &block.transposed());
+        }
+        few.factorise()
+    }
+
+    /// Writes the blocks of the bodies to the matrix.
+    fn set_matrix(&mut self) {
+        self.matrix.clear();
+        for (body, block) in self.diagonal.iter().enumerate() {
+            add_block(&mut self.matrix, body, body, block);
+        }
+        for (line, block) in self.topology.lines.iter().zip(&self.beside) {
+            if let (End::OnBody(a), End::OnBody(b)) = (line.from, line.to) {
+                add_block(&mut self.matrix, b, a, block);
+                add_block(&mut self.matrix, a, b, &block.transposed());
+            }
         }
     }
 
@@ -226,33 +287,32 @@ impl ShiftedSystem {
             end_shift(line.from, &from.place),
             end_shift(line.to, &to.place),
         );
-        let nodes = line.nodes;
-        let states = line.first_state..line.first_state + 3 * nodes;
-        let (x, v) = (&r_x[states.clone()], &r_v[states]);
+        let states = line.first_state..line.first_state + 3 * line.nodes;
+        let (x, _) = r_x[states.clone()].as_chunks::<3>();
+        let (v, _) = r_v[states].as_chunks::<3>();
         let elastic = &self.elastic[line.segments()];
-        let points = &derivatives.points[line.node_points()];
         let loads = &mut self.loads[line.node_points()];
-        let mut here = if nodes > 0 {
-            DVec3::from_slice(x)
-        } else {
-            last
-        };
-        let mut pull = elastic[0].times(here - first);
-        let on_from = pull;
-        for i in 0..nodes {
-            let next = if i + 1 < nodes {
-                DVec3::from_slice(&x[3 * i + 3..])
-            } else {
-                last
-            };
-            let onward = elastic[i + 1].times(next - here);
-            let point = &points[i];
-            loads[i] = (g * point.mass_kg) * DVec3::from_slice(&v[3 * i..]) + (onward - pull);
-            if point.stiffness != Symmetric3::default() {
-                loads[i] -= g * g * point.stiffness.times(here);
+        let mut on_from = DVec3::ZERO;
+        let mut before = first;
+        // Where the segment behind pulls.
+        let mut behind = &mut on_from;
+        let states = x.iter().zip(v);
+        let nodes = loads.iter_mut().zip(&self.inertia[line.node_points()]);
+        for (((x, v), (load, inertia)), elastic) in states.zip(nodes).zip(elastic) {
+            let here = DVec3::from_array(*x);
+            let pull = elastic.times(here - before);
+            *behind += pull;
+            *load = *inertia * DVec3::from_array(*v) - pull;
+            before = here;
+            behind = load;
+        }
+        let pull = elastic[line.nodes].times(last - before);
+        *behind += pull;
+        if self.has_own_stiffness {
+            let points = &derivatives.points[line.node_points()];
+            for ((load, point), x) in loads.iter_mut().zip(points).zip(x) {
+                *load -= g * g * point.stiffness.times(DVec3::from_array(*x));
             }
-            pull = onward;
-            here = next;
         }
         let (from_load, to_load) = self.chains[index].forward(loads);
         for (end, place, load) in [
@@ -268,7 +328,10 @@ impl ShiftedSystem {
     }
 
     fn solve_bodies(&mut self) {
-        self.elimination.solve(&mut self.rhs);
+        match &self.few {
+            Some(few) if self.are_few => few.solve(&mut self.rhs),
+            _ => self.elimination.solve(&mut self.rhs),
+        }
         for (index, site) in self.topology.bodies.iter().enumerate() {
             let v = &self.rhs[self.matrix.pattern().offset(index)..];
             self.motions[index] = Twist {
@@ -303,29 +366,28 @@ impl ShiftedSystem {
         let loads = &mut self.loads[line.node_points()];
         self.chains[index].backward(loads, first, last);
         let states = line.first_state..line.first_state + 3 * line.nodes;
-        let x = r_x[states.clone()].chunks_exact_mut(3);
-        let v = r_v[states].chunks_exact_mut(3);
-        for ((x, v), load) in x.zip(v).zip(loads) {
-            for ((x, v), load) in x.iter_mut().zip(v).zip(load.to_array()) {
-                *v = load;
-                *x = self.g * (load + *x);
-            }
+        let (x, _) = r_x[states.clone()].as_chunks_mut::<3>();
+        let (v, _) = r_v[states].as_chunks_mut::<3>();
+        for ((x, v), load) in x.iter_mut().zip(v).zip(loads) {
+            *x = (self.g * (*load + DVec3::from_array(*x))).to_array();
+            *v = load.to_array();
         }
     }
 
     fn take_bodies(&mut self, r_x: &mut [f64], r_v: &mut [f64]) {
         for (site, motion) in self.topology.bodies.iter().zip(&self.motions) {
             let at = site.first_state;
-            motion.linear.write_to_slice(&mut r_v[at..]);
+            let (r_x, r_v) = (&mut r_x[at..at + 6], &mut r_v[at..at + 6]);
+            motion.linear.write_to_slice(&mut r_v[..3]);
             if site.turns {
-                motion.angular.write_to_slice(&mut r_v[at + 3..]);
+                motion.angular.write_to_slice(&mut r_v[3..]);
             } else {
-                for r in &mut r_v[at + 3..at + 6] {
+                for r in &mut r_v[3..] {
                     *r *= self.g;
                 }
             }
-            for k in at..at + 6 {
-                r_x[k] = self.g * (r_v[k] + r_x[k]);
+            for (x, v) in r_x.iter_mut().zip(r_v) {
+                *x = self.g * (*v + *x);
             }
         }
     }
@@ -367,3 +429,6 @@ fn add_block(matrix: &mut BlockMatrix, i: usize, j: usize, block: &BodyBlock) {
     add(3, 0, block.turn_by_linear);
     add(3, 3, block.turn);
 }
+
+#[cfg(test)]
+mod tests;
