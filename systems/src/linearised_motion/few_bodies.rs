@@ -15,6 +15,10 @@ const LEAST_PIVOT: f64 = 1e-12;
 
 /// Factors of the matrix of one or two bodies: two points, a point and a body, and so on.
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is one in a simulation, and a look through a box at every solution would cost more"
+)]
 pub enum FewBodies {
     /// One point.
     Three(Factors<3>),

@@ -216,10 +216,11 @@ fn dense_increments(topology: &Topology, derivatives: &Derivatives, r: &[f64]) -
     }
     for site in topology.bodies.iter().filter(|site| !site.turns) {
         for k in site.first_state + 3..site.first_state + 6 {
-            for j in 0..n {
-                matrix[k][j] = if j == k { 1.0 } else { 0.0 };
-                matrix[j][k] = matrix[k][j];
+            matrix[k].fill(0.0);
+            for row in &mut matrix {
+                row[k] = 0.0;
             }
+            matrix[k][k] = 1.0;
             load[k] = g * r[n + k];
         }
     }
