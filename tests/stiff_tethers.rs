@@ -329,3 +329,18 @@ fn the_towline_finds_its_equilibrium_and_keeps_it() {
         1e-3,
     );
 }
+
+/// `Auto` may be written alone, in a scene and on the command line, and is the default.
+#[test]
+fn auto_is_the_default_and_a_word_of_its_own() {
+    let text = one_km_line(10, 11.5e3, 60.0);
+    let written = text.replace("run: (", "run: (integrator: Auto, ");
+    let ends = [
+        fly(&text, &[]),
+        fly(&written, &[]),
+        fly(&text, &["run.integrator=Auto"]),
+        fly(&text, &["run.integrator=Auto(accuracy_m: 0.001)"]),
+    ]
+    .map(|results| position(&results, "probe", 60.0));
+    assert!(ends.iter().all(|end| *end == ends[0]), "{ends:?}");
+}

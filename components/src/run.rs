@@ -166,7 +166,16 @@ impl IntegratorSpec {
                 accuracy_m,
                 longest_step_s,
             } => {
-                report.positive("accuracy_m", accuracy_m);
+                // Round-off of positions at 56 km is some 1e-11 m.
+                if !(1e-12..=1e3).contains(&accuracy_m) {
+                    report.add(
+                        "accuracy_m",
+                        format!(
+                            "`accuracy_m` must lie between 1e-12 and 1000 m, it is {accuracy_m}"
+                        ),
+                        "",
+                    );
+                }
                 if let Some(longest_step_s) = longest_step_s {
                     report.positive("longest_step_s", longest_step_s);
                 }

@@ -10,8 +10,8 @@ use aerobot_components::scene_component::{FieldReport, Violation};
 use super::checks::check_scene;
 use super::reader::Reader;
 use super::source::{
-    Diagnostic, FieldPath, Kind, Node, Override, Source, duplicates, non_finite, parse_override,
-    scan,
+    Diagnostic, FieldPath, Kind, Node, Override, Scalar, Source, duplicates, non_finite,
+    parse_override, scan,
 };
 use super::tables::Tables;
 use super::{Scene, SceneError};
@@ -47,7 +47,19 @@ impl Simulator {
         }
         // A scene that does not scan is shown as it is, before any override is blamed.
         let plain = Source::new(file_name, text);
-        read_tree(&plain).map_err(|diagnostic| SceneError::render(&plain, &[diagnostic]))?;
+        let root =
+            read_tree(&plain).map_err(|diagnostic| SceneError::render(&plain, &[diagnostic]))?;
+        // The last one given is the one that counts.
+        let path: FieldPath = INTEGRATOR.parse().map_err(SceneError::plain)?;
+        let given = parsed.iter().rev().find(|change| change.path == path);
+        let word = match given {
+            Some(change) => Some(change.value_text.clone()),
+            None => bare_word(&plain, &root, &path),
+        };
+        if let Some(word) = word.filter(|word| INTEGRATORS.contains(&word.as_str())) {
+            let whole = parse_override(&format!("{INTEGRATOR}={word}()"));
+            parsed.push(whole.map_err(SceneError::plain)?);
+        }
         let source = match plain.with_overrides(&parsed) {
             Ok(source) => source,
             Err(diagnostic) => return Err(SceneError::render(&plain, &[diagnostic])),
@@ -104,6 +116,18 @@ impl Simulator {
             Err(SceneError::render(&scene.source, &diagnostics))
         }
     }
+}
+
+/// Where a scene names its integrator.
+const INTEGRATOR: &str = "run.integrator";
+/// Integrators of which every value has a default: `Auto` alone is `Auto()`.
+const INTEGRATORS: [&str; 4] = ["Auto", "Implicit", "Adaptive", "Fixed"];
+
+/// The integrator of a scene, if it is given as a word alone.
+fn bare_word(source: &Source, root: &Node, path: &FieldPath) -> Option<String> {
+    let node = root.get(path)?;
+    (node.kind == Kind::Scalar(Scalar::Word))
+        .then(|| source.text().get(node.span.clone()).map(str::to_owned))?
 }
 
 /// Stands in for a `run` that could not be read, so that the rest can still be checked.
