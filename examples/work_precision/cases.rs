@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use super::one_km_line::one_km_line;
+
 /// A case of the study.
 pub(crate) struct Case {
     /// Name in the table and above the panel.
@@ -27,11 +29,19 @@ pub(crate) fn cases() -> Vec<Case> {
     };
     vec![
         case("900 m in three gusts", paper("comparison_900m"), 100.0),
-        case("1 km line of 100 nodes", line(100), 60.0),
+        case(
+            "1 km line of 100 nodes",
+            one_km_line(100, 11.5e3, 60.0),
+            60.0,
+        ),
         Case {
             // Less takes minutes and says no more: the stable step keeps even 1e-3 within 1e-10 m of it.
             reference_tolerance: 1e-8,
-            ..case("1 km line of 500 nodes", line(500), 60.0)
+            ..case(
+                "1 km line of 500 nodes",
+                one_km_line(500, 11.5e3, 60.0),
+                60.0,
+            )
         },
         Case {
             reference_tolerance: 1e-10,
@@ -45,55 +55,6 @@ pub(crate) fn cases() -> Vec<Case> {
 fn paper(name: &str) -> String {
     let file = format!("{}/scenes/paper/{name}.ron", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(file).expect("the scene is in the repository")
-}
-
-/// The line of `benches/stiff_tethers.rs` with `nodes` nodes: 1 km, 4 kg at its end, at rest and straight,
-/// tilted by 0.3 rad towards +x, each segment stretched by the weight below it times cos 0.3.
-fn line(nodes: usize) -> String {
-    let (length_m, line_kg, probe_kg, gravity, stiffness_n) = (1000.0, 0.237, 4.0, 8.87, 11.5e3);
-    let segments = nodes as f64 + 1.0;
-    let node_kg = line_kg / nodes as f64;
-    let stiffness_n_m = stiffness_n / length_m * segments;
-    let damping_n_s_m = 0.2 * (stiffness_n_m * node_kg).sqrt() / segments;
-    let diameter_m = 0.458e-3;
-    let density_kg_m3 = density_kg_m3(line_kg / length_m, diameter_m);
-    let (sin, cos) = libm::sincos(0.3);
-    let mut along_m = 0.0;
-    let mut positions = String::new();
-    for number in 1..=nodes + 1 {
-        let below_kg = probe_kg + node_kg * (nodes + 1 - number) as f64;
-        along_m += length_m / segments + below_kg * gravity * cos / stiffness_n_m;
-        if number <= nodes {
-            let _ = write!(positions, "({}, 0, {}),", along_m * sin, -along_m * cos);
-        }
-    }
-    let (x_m, z_m) = (along_m * sin, -along_m * cos);
-    format!(
-        r#"(
-            name: "line",
-            environment: (
-                atmosphere: Uniform(density_kg_m3: 1), wind: [Uniform(velocity_m_s: (4, 3, 0))],
-            ),
-            entities: {{
-                "top": (Fixed: (position_m: (0, 0, 0))),
-                "probe": (
-                    Body: (mass_kg: {probe_kg}),
-                    Sphere: (radius_m: 0.05),
-                    Drag: Constant(coefficient: 0.47),
-                    Pose: (position_m: ({x_m}, 0, {z_m})),
-                ),
-                "line": (Tether: (
-                    from: ("top", Centre), to: ("probe", Centre),
-                    length_m: {length_m}, nodes: {nodes},
-                    diameter_m: {diameter_m}, density_kg_m3: {density_kg_m3},
-                    axial_stiffness_n: {stiffness_n}, damping_n_s_m: {damping_n_s_m},
-                    lumping: Interior, drag: (normal: 1, tangential: 0.03),
-                    start: Positions([{positions}]),
-                )),
-            }},
-            run: (duration_s: 60, output_every_s: 60),
-        )"#
-    )
 }
 
 /// A body of 50 kg on three stiff tethers of 10 m, yawed by 0.2 rad and 5 cm aside, in vacuum.

@@ -9,6 +9,8 @@
 
 mod cases;
 mod measure;
+#[path = "../../benches/scenes/one_km_line.rs"]
+mod one_km_line;
 mod plot;
 mod row;
 

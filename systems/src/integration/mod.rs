@@ -3,6 +3,7 @@
 
 pub mod automatic;
 pub mod dormand_prince;
+mod ros34pw2;
 pub mod rosenbrock;
 pub mod runge_kutta4;
 pub mod runge_kutta43;
