@@ -109,6 +109,10 @@ impl Tableau {
 
 fn invert_lower(matrix: &[[f64; STAGES]; STAGES]) -> [[f64; STAGES]; STAGES] {
     let mut inverse = [[0.0; STAGES]; STAGES];
+    #[allow(
+        clippy::needless_range_loop,
+        reason = "rows and columns by their numbers, as on paper"
+    )]
     for column in 0..STAGES {
         for row in column..STAGES {
             let one = if row == column { 1.0 } else { 0.0 };
@@ -268,8 +272,9 @@ impl Rosenbrock {
             largest = strain;
         }
         let (error, index) = largest;
-        // Not below: what is not a number is not accurate.
-        if !(error <= 1.0) {
+        // What is not a number is not accurate.
+        let accurate = error <= 1.0;
+        if !accurate {
             return Ok(Verdict::Inaccurate(error, index));
         }
         self.evaluate_trial(equations, trajectory, end_s)?;

@@ -15,6 +15,10 @@ const LEAST_PIVOT: f64 = 1e-12;
 
 /// Factors of the matrix of one or two bodies: two points, a point and a body, and so on.
 #[derive(Clone, Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "there are a few of them in a simulation, and a box is one more step to the values"
+)]
 pub enum FewBodies {
     /// One point.
     Three(Factors<3>),
