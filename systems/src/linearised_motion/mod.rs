@@ -15,6 +15,7 @@ pub mod chain;
 pub mod derivatives;
 pub mod error_norm;
 pub mod few_bodies;
+pub mod joined_pair;
 pub mod shifted_system;
 pub mod symmetric3;
 pub mod topology;

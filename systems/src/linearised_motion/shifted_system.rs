@@ -2,10 +2,11 @@
 
 use glam::{DMat3, DVec3};
 
-use super::body_block::{BodyBlock, Twist};
+use super::body_block::{BodyBlock, Place, Twist};
 use super::chain::Chain;
 use super::derivatives::Derivatives;
 use super::few_bodies::FewBodies;
+use super::joined_pair::JoinedPair;
 use super::symmetric3::Symmetric3;
 use super::topology::{End, Topology};
 use crate::nonlinear_solver::block_elimination::Elimination;
@@ -49,6 +50,10 @@ pub struct ShiftedSystem {
     /// end on the body at the `to` end.
     diagonal: Vec<BodyBlock>,
     beside: Vec<BodyBlock>,
+    /// Solves all of two bodies on one tether.
+    pair: Option<JoinedPair>,
+    /// Whether the factors are in `pair`.
+    is_pair: bool,
     /// Solves for one or two bodies.
     few: Option<FewBodies>,
     /// Solves for more, and where the former cannot.
@@ -62,8 +67,9 @@ pub struct ShiftedSystem {
     inertia: Vec<f64>,
     /// Whether a node has a stiffness of its own.
     has_own_stiffness: bool,
-    /// Of the bodies.
+    /// Of the bodies, and what loads them.
     motions: Vec<Twist>,
+    pushes: Vec<Twist>,
     rhs: Vec<f64>,
 }
 
@@ -96,6 +102,8 @@ impl ShiftedSystem {
             rhs: vec![0.0; pattern.dimension()],
             diagonal: vec![BodyBlock::ZERO; topology.bodies.len()],
             beside: vec![BodyBlock::ZERO; topology.lines.len()],
+            pair: JoinedPair::new(&topology),
+            is_pair: false,
             few: FewBodies::new(&topology.bodies),
             matrix: BlockMatrix::new(pattern),
             are_few: false,
@@ -103,6 +111,7 @@ impl ShiftedSystem {
             inertia: vec![0.0; topology.points],
             has_own_stiffness: false,
             motions: vec![Twist::default(); topology.bodies.len()],
+            pushes: vec![Twist::default(); topology.bodies.len()],
             topology,
         }
     }
@@ -127,6 +136,10 @@ impl ShiftedSystem {
         self.g = g;
         self.set_blocks(derivatives, step_s);
         self.set_bodies(derivatives);
+        self.is_pair = self.factorise_pair(derivatives);
+        if self.is_pair {
+            return Ok(());
+        }
         for (index, line) in self.topology.lines.iter().enumerate() {
             let left = self.chains[index]
                 .factorise(&self.own[line.node_points()], &self.blocks[line.segments()])
@@ -199,6 +212,16 @@ impl ShiftedSystem {
         }
     }
 
+    /// Factorises the whole if it is a pair of bodies; whether that was possible.
+    fn factorise_pair(&mut self, derivatives: &Derivatives) -> bool {
+        let (Some(pair), [line]) = (&mut self.pair, &self.topology.lines[..]) else {
+            return false;
+        };
+        let places = derivatives.ends[0].each_ref().map(|end| &end.place);
+        let own = &self.own[line.node_points()];
+        pair.factorise(&self.diagonal, places, own, &self.blocks[line.segments()])
+    }
+
     /// Factorises the blocks of the bodies if these are few; whether that was possible.
     fn factorise_few(&mut self) -> bool {
         let Some(few) = &mut self.few else {
@@ -242,11 +265,11 @@ impl ShiftedSystem {
         let (r_v, r_s) = rest.split_at_mut(self.topology.coordinates);
         self.load_bodies(derivatives, r_x, r_v);
         for index in 0..self.topology.lines.len() {
-            self.load_line(index, derivatives, r_x, r_v);
+            self.pull_line(index, derivatives, r_x, r_v);
         }
-        self.solve_bodies();
+        self.solve_all(derivatives);
         for index in 0..self.topology.lines.len() {
-            self.take_line(index, derivatives, r_x, r_v);
+            self.take_line(index, r_x, r_v);
         }
         self.take_bodies(r_x, r_v);
         for r in r_s {
@@ -264,29 +287,20 @@ impl ShiftedSystem {
             let push = body.mass.times(twist_at(r_v, at));
             let pull = body.stiffness.times(shift);
             self.motions[index] = shift;
-            let load = Twist {
+            self.pushes[index] = Twist {
                 linear: g * push.linear - g * g * pull.linear,
                 angular: g * push.angular - g * g * pull.angular,
             };
-            let offset = self.matrix.pattern().offset(index);
-            self.rhs[offset..offset + site.unknowns()].fill(0.0);
-            add_load(&mut self.rhs[offset..], site.turns, load);
         }
     }
 
-    /// The same of a line, and the elimination of its nodes.
-    fn load_line(&mut self, index: usize, derivatives: &Derivatives, r_x: &[f64], r_v: &[f64]) {
+    /// The same of a line: the loads of its nodes, and what it adds to those of its bodies.
+    fn pull_line(&mut self, index: usize, derivatives: &Derivatives, r_x: &[f64], r_v: &[f64]) {
         let line = self.topology.lines[index];
         let g = self.g;
         let [from, to] = &derivatives.ends[index];
-        let end_shift = |end: End, place: &super::body_block::Place| match end {
-            End::Held => DVec3::ZERO,
-            End::OnBody(body) => place.motion(self.motions[body]),
-        };
-        let (first, last) = (
-            end_shift(line.from, &from.place),
-            end_shift(line.to, &to.place),
-        );
+        let first = motion_of(&self.motions, line.from, &from.place);
+        let last = motion_of(&self.motions, line.to, &to.place);
         let states = line.first_state..line.first_state + 3 * line.nodes;
         let (x, _) = r_x[states.clone()].as_chunks::<3>();
         let (v, _) = r_v[states].as_chunks::<3>();
@@ -314,20 +328,43 @@ impl ShiftedSystem {
                 *load -= g * g * point.stiffness.times(DVec3::from_array(*x));
             }
         }
-        let (from_load, to_load) = self.chains[index].forward(loads);
-        for (end, place, load) in [
-            (line.from, &from.place, from_load + on_from),
-            (line.to, &to.place, to_load - pull),
-        ] {
-            if let End::OnBody(body) = end {
-                let offset = self.matrix.pattern().offset(body);
-                let turns = self.topology.bodies[body].turns;
-                add_load(&mut self.rhs[offset..], turns, place.load(load));
-            }
+        push(&mut self.pushes, line.from, &from.place, on_from);
+        push(&mut self.pushes, line.to, &to.place, -pull);
+    }
+
+    /// From the loads of nodes and bodies to their motions.
+    fn solve_all(&mut self, derivatives: &Derivatives) {
+        if let (true, Some(pair), [line]) = (self.is_pair, &self.pair, &self.topology.lines[..]) {
+            let places = derivatives.ends[0].each_ref().map(|end| &end.place);
+            let loads = &mut self.loads[line.node_points()];
+            self.motions.copy_from_slice(&self.pushes);
+            pair.solve(places, loads, &mut self.motions);
+            return;
+        }
+        let lines = self.topology.lines.iter().zip(&derivatives.ends);
+        for ((line, [from, to]), chain) in lines.zip(&self.chains) {
+            let (on_from, on_to) = chain.forward(&mut self.loads[line.node_points()]);
+            push(&mut self.pushes, line.from, &from.place, on_from);
+            push(&mut self.pushes, line.to, &to.place, on_to);
+        }
+        self.solve_bodies();
+        let lines = self.topology.lines.iter().zip(&derivatives.ends);
+        for ((line, [from, to]), chain) in lines.zip(&self.chains) {
+            let first = motion_of(&self.motions, line.from, &from.place);
+            let last = motion_of(&self.motions, line.to, &to.place);
+            chain.backward(&mut self.loads[line.node_points()], first, last);
         }
     }
 
     fn solve_bodies(&mut self) {
+        let pattern = self.matrix.pattern();
+        for (index, (site, load)) in self.topology.bodies.iter().zip(&self.pushes).enumerate() {
+            let rhs = &mut self.rhs[pattern.offset(index)..][..site.unknowns()];
+            load.linear.write_to_slice(rhs);
+            if site.turns {
+                load.angular.write_to_slice(&mut rhs[3..]);
+            }
+        }
         match &self.few {
             Some(few) if self.are_few => few.solve(&mut self.rhs),
             _ => self.elimination.solve(&mut self.rhs),
@@ -345,26 +382,10 @@ impl ShiftedSystem {
         }
     }
 
-    /// Nodes of a line from the motion of its ends; `r_x` and `r_v` become X and V there.
-    fn take_line(
-        &mut self,
-        index: usize,
-        derivatives: &Derivatives,
-        r_x: &mut [f64],
-        r_v: &mut [f64],
-    ) {
+    /// Makes X and V of a line's nodes of their motion.
+    fn take_line(&self, index: usize, r_x: &mut [f64], r_v: &mut [f64]) {
         let line = self.topology.lines[index];
-        let [from, to] = &derivatives.ends[index];
-        let end_motion = |end: End, place: &super::body_block::Place| match end {
-            End::Held => DVec3::ZERO,
-            End::OnBody(body) => place.motion(self.motions[body]),
-        };
-        let (first, last) = (
-            end_motion(line.from, &from.place),
-            end_motion(line.to, &to.place),
-        );
-        let loads = &mut self.loads[line.node_points()];
-        self.chains[index].backward(loads, first, last);
+        let loads = &self.loads[line.node_points()];
         let states = line.first_state..line.first_state + 3 * line.nodes;
         let (x, _) = r_x[states.clone()].as_chunks_mut::<3>();
         let (v, _) = r_v[states].as_chunks_mut::<3>();
@@ -400,14 +421,20 @@ fn twist_at(values: &[f64], at: usize) -> Twist {
     }
 }
 
-fn add_load(rhs: &mut [f64], turns: bool, load: Twist) {
-    for (r, f) in rhs.iter_mut().zip(load.linear.to_array()) {
-        *r += f;
+/// How an end of a tether moves; `motions` are those of the bodies.
+fn motion_of(motions: &[Twist], end: End, place: &Place) -> DVec3 {
+    match end {
+        End::Held => DVec3::ZERO,
+        End::OnBody(body) => place.motion(motions[body]),
     }
-    if turns {
-        for (r, f) in rhs[3..].iter_mut().zip(load.angular.to_array()) {
-            *r += f;
-        }
+}
+
+/// Adds a force on an end of a tether to the `loads` of the bodies.
+fn push(loads: &mut [Twist], end: End, place: &Place, force: DVec3) {
+    if let End::OnBody(body) = end {
+        let load = place.load(force);
+        loads[body].linear += load.linear;
+        loads[body].angular += load.angular;
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::DQuat;
 
 use super::*;
-use crate::linearised_motion::body_block::{Place, cross_matrix};
+use crate::linearised_motion::body_block::cross_matrix;
 use crate::linearised_motion::derivatives::{LinearPoint, LinearSegment};
 use crate::linearised_motion::topology::{BodySite, Line};
 use crate::nonlinear_solver::test_support::{Random, dense_solve};
@@ -173,8 +173,7 @@ fn dense_matrices(topology: &Topology, derivatives: &Derivatives) -> [Dense; 3] 
             let along = Symmetric3::along(segment.direction, 1.0, 0.0);
             let across = Symmetric3::identity(1.0).plus_scaled(along, -1.0);
             let (mut stretch, mut mean) = (motion(point), motion(point));
-            for (column, m) in &mut stretch {
-                let _ = column;
+            for (_, m) in &mut stretch {
                 *m = -*m;
             }
             stretch.extend(motion(point + 1));
@@ -227,6 +226,37 @@ fn dense_increments(topology: &Topology, derivatives: &Derivatives, r: &[f64]) -
     dense_solve(matrix, &load)
 }
 
+/// With what segments and places give to points and bodies.
+fn ready(topology: &Topology, given: &Derivatives) -> Derivatives {
+    let mut ready = given.clone();
+    for line in &topology.lines {
+        for point in line.segments() {
+            let drag = given.segments[point].drag;
+            for point in &mut ready.points[point..point + 2] {
+                point.damping = point.damping.plus_scaled(drag, 0.5);
+            }
+        }
+    }
+    ready.load_bodies(topology);
+    ready
+}
+
+/// The increments that a system finds, against the dense ones.
+fn check(system: &mut ShiftedSystem, ready: &Derivatives, r: &[f64], expected: &[f64], case: &str) {
+    let n = expected.len();
+    let mut u = r.to_vec();
+    system.solve(ready, &mut u);
+    for k in 0..n {
+        let v = expected[k];
+        assert!((u[n + k] - v).abs() < 1e-9, "{case}, velocity {k}");
+        let x = GAMMA * STEP_S * (v + r[k]);
+        assert!((u[k] - x).abs() < 1e-9, "{case}, position {k}");
+    }
+    for k in 2 * n..r.len() {
+        assert!((u[k] - GAMMA * STEP_S * r[k]).abs() < 1e-15, "{case}");
+    }
+}
+
 #[test]
 fn bodies_and_tethers_answer_as_the_dense_system_does() {
     let mut random = Random::new(3);
@@ -248,35 +278,39 @@ fn bodies_and_tethers_answer_as_the_dense_system_does() {
         let n = topology.coordinates;
         let r: Vec<f64> = (0..2 * n + 2).map(|_| random.signed()).collect();
         let expected = dense_increments(&topology, &given, &r);
-        let mut ready = given.clone();
-        for line in &topology.lines {
-            for point in line.segments() {
-                let drag = given.segments[point].drag;
-                for point in &mut ready.points[point..point + 2] {
-                    point.damping = point.damping.plus_scaled(drag, 0.5);
-                }
-            }
-        }
-        ready.load_bodies(&topology);
-        let few = ShiftedSystem::new(topology);
+        let ready = ready(&topology, &given);
+        let whole = ShiftedSystem::new(topology);
+        let few = ShiftedSystem {
+            pair: None,
+            ..whole.clone()
+        };
         let many = ShiftedSystem {
             few: None,
             ..few.clone()
         };
-        for mut system in [few, many] {
+        for mut system in [whole, few, many] {
             system.factorise(&ready, STEP_S, GAMMA).unwrap();
-            assert_eq!(system.are_few, system.few.is_some());
-            let mut u = r.clone();
-            system.solve(&ready, &mut u);
-            for k in 0..n {
-                let v = expected[k];
-                assert!((u[n + k] - v).abs() < 1e-9, "case {case}, velocity {k}");
-                let x = GAMMA * STEP_S * (v + r[k]);
-                assert!((u[k] - x).abs() < 1e-9, "case {case}, position {k}");
-            }
-            for k in 2 * n..2 * n + 2 {
-                assert!((u[k] - GAMMA * STEP_S * r[k]).abs() < 1e-15);
-            }
+            assert_eq!(system.is_pair, system.pair.is_some());
+            let are_few = system.few.is_some() && !system.is_pair;
+            assert_eq!(system.are_few, are_few);
+            check(&mut system, &ready, &r, &expected, &format!("case {case}"));
         }
     }
+}
+
+/// A body that would run away by itself within the step: nothing is positive definite any more.
+#[test]
+fn what_is_not_positive_definite_is_solved_with_row_exchanges() {
+    let mut random = Random::new(5);
+    let topology = topology(&[true, true], &[(Some(0), Some(1), 3)]);
+    let mut given = derivatives(&topology, &mut random);
+    given.bodies[0].stiffness.linear = DMat3::from_diagonal(DVec3::splat(-5e4));
+    let n = topology.coordinates;
+    let r: Vec<f64> = (0..2 * n).map(|_| random.signed()).collect();
+    let expected = dense_increments(&topology, &given, &r);
+    let ready = ready(&topology, &given);
+    let mut system = ShiftedSystem::new(topology);
+    system.factorise(&ready, STEP_S, GAMMA).unwrap();
+    assert!(!system.is_pair && !system.are_few);
+    check(&mut system, &ready, &r, &expected, "runaway");
 }
