@@ -1,5 +1,6 @@
 //! The motion of a world linearised about a state, and the direct solution of what an implicit step
-//! asks of it: tethers eliminate first, in linear time, bodies last.
+//! asks of it: tethers eliminate first, in linear time, bodies last; two bodies on one tether from end
+//! to end.
 //!
 //! With M the masses, D = dF/dv and K = dF/dx, a stage of a Rosenbrock method with g = gamma h solves
 //!
