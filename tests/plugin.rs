@@ -282,3 +282,13 @@ fn a_force_from_outside_accelerates_by_f_over_m() {
     assert_eq!(sink.states("probe").count(), 101);
     assert!(largest < 1e-11, "{largest}");
 }
+
+/// A plugin's scene under the implicit integrator: to 1 um over 60 s where the explicit one has it.
+#[test]
+fn implicit_and_explicit_agree_on_the_scene_of_a_plugin() {
+    let run = |integrator| descent(&["run.duration_s=60", "run.output_every_s=20", integrator]);
+    let expected = run("run.integrator=Adaptive(relative_tolerance: 1e-12)");
+    let found = run("run.integrator=Implicit(accuracy_m: 1e-8)");
+    let error = flight::largest_distance_m(&found, &expected);
+    flight::assert_below("the descent", error, 1e-6);
+}
