@@ -90,7 +90,7 @@ pub enum IntegratorSpec {
     /// Implicit where tethers are stiff, explicit where that is cheaper, with steps chosen for an
     /// accuracy.
     Auto {
-        /// Wanted accuracy of positions at the end, m.
+        /// Wanted accuracy of the positions of bodies, m; the error of every step is held to a part of it.
         #[serde(default = "IntegratorSpec::accuracy_m")]
         accuracy_m: f64,
         /// Longest step, s; without limit unless given.
@@ -99,7 +99,7 @@ pub enum IntegratorSpec {
     },
     /// Implicit throughout (ROS34PW2), with steps chosen for an accuracy.
     Implicit {
-        /// Wanted accuracy of positions at the end, m.
+        /// Wanted accuracy of the positions of bodies, m; the error of every step is held to a part of it.
         #[serde(default = "IntegratorSpec::accuracy_m")]
         accuracy_m: f64,
         /// Longest step, s; without limit unless given.

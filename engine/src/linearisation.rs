@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use aerobot_components::body::Anchor;
 use aerobot_components::derivatives::{ForceDerivatives, SegmentDerivatives, TorqueDerivatives};
-use aerobot_components::environment::Gravity;
 use aerobot_components::segment::{KelvinVoigt, Segment, SegmentGeometry, Tension};
 use aerobot_components::state::{
     AddedInertia, Attitude, Force, Inertia, Mass, Position, StateIndex,
@@ -93,10 +92,10 @@ impl Linearisation {
                 point.mass_kg = mass.0;
             }
         }
-        derivatives.gravity_m_s2 = match world.resource::<EnvironmentModel>().gravity {
-            Gravity::Constant(acceleration) => acceleration,
-            Gravity::InverseSquare { surface_m_s2, .. } => surface_m_s2,
-        };
+        derivatives.gravity_m_s2 = world
+            .resource::<EnvironmentModel>()
+            .gravity
+            .acceleration_m_s2(0.0);
         Ok(Self {
             least_tension_n: least_tension_n(world),
             schedule,

@@ -182,6 +182,9 @@ pub enum StepFailure {
     },
 }
 
+/// Under an accuracy in metres the first step after something has switched is at most this, s.
+const FIRST_STEP_S: f64 = 0.01;
+
 /// The tolerance of a step is this part of the accuracy that is wanted in the end: errors add up.
 const PART_OF_ACCURACY: f64 = 0.25;
 

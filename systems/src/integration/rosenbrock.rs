@@ -19,14 +19,12 @@
 use super::ros34pw2::{GAMMA, STAGES, Tableau};
 use super::step_control::StepControl;
 use super::{
-    Equations, Integrator, MechanicalEnergy, PART_OF_ACCURACY, StepFailure, Trajectory,
-    check_state, first_not_finite,
+    Equations, FIRST_STEP_S, Integrator, MechanicalEnergy, PART_OF_ACCURACY, StepFailure,
+    Trajectory, check_state, first_not_finite,
 };
 
 /// Order of the embedded solution, plus one.
 const ERROR_ORDER: u32 = 3;
-/// The first step after something has switched is at most this, s.
-const FIRST_STEP_S: f64 = 0.01;
 /// In steps up to this, s, the error of each counts, for in fast motion errors of either sign cancel; in
 /// longer ones, of a motion that creeps, they add up, and the error per this time counts.
 const PER_STEP_UP_TO_S: f64 = 0.5;

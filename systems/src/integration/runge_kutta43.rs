@@ -6,14 +6,12 @@
 
 use super::step_control::StepControl;
 use super::{
-    Equations, Integrator, PART_OF_ACCURACY, StepFailure, Trajectory, check_state, combine,
-    first_not_finite,
+    Equations, FIRST_STEP_S, Integrator, PART_OF_ACCURACY, StepFailure, Trajectory, check_state,
+    combine, first_not_finite,
 };
 
 /// Order of the embedded solution, plus one.
 const ERROR_ORDER: u32 = 4;
-/// The first step after something has switched is at most this, s.
-const FIRST_STEP_S: f64 = 0.01;
 
 /// The method with its scratch.
 #[derive(Debug)]

@@ -1,6 +1,7 @@
 //! Step control by a proportional-integral rule (Gustafsson 1991; Hairer and Wanner 1996, IV.2):
-//! h' = h s err^(-0.7/q) err_previous^(0.4/q), with the safety s = 0.9, the factor within 0.2 and 4,
-//! and no growth after a rejection; q is the order of the error estimate plus one.
+//! h' = h s err^(-0.7/q) err_previous^(0.4/q), with the safety s = 0.93 (in steady motion the
+//! error then stays at half the tolerance), the factor within 0.2 and 4, and no growth after a rejection;
+//! q is the order of the error estimate plus one.
 
 const SAFETY: f64 = 0.93;
 const SMALLEST_FACTOR: f64 = 0.2;
@@ -45,7 +46,9 @@ impl StepControl {
     pub fn propose(&self, time_s: f64, limit_s: f64) -> (f64, bool) {
         let remaining = limit_s - time_s;
         let stretch = if self.after_rejection { 1e-9 } else { STRETCH };
-        let count = (remaining / self.step_s - stretch).ceil();
+        // The longest step is a bound, and is not stretched.
+        let fewest = (remaining / self.longest_s - 1e-9).ceil();
+        let count = (remaining / self.step_s - stretch).ceil().max(fewest);
         if count <= 1.0 {
             (remaining, true)
         } else if count <= FEW_STEPS {
@@ -115,15 +118,35 @@ impl StepControl {
         self.after_rejection = false;
     }
 
-    /// The step that will be proposed, s.
-    #[must_use]
-    pub fn step_s(&self) -> f64 {
-        self.step_s
-    }
-
     /// Whether the step has shrunk to round-off of the time `time_s`.
     #[must_use]
     pub fn is_exhausted(&self, time_s: f64) -> bool {
         self.step_s < ROUND_OFF * time_s.abs().max(1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A step may be stretched to reach a limit, but not beyond the longest that was allowed, and not
+    /// right after a rejection, where it would be the same step again.
+    #[test]
+    fn a_stretched_step_keeps_to_the_longest() {
+        let mut control = StepControl::new(3, 1.0, 1.0);
+        assert_eq!(control.propose(0.0, 1.05), (0.525, false));
+        control = StepControl::new(3, 1.0, 10.0);
+        assert_eq!(control.propose(0.0, 1.05), (1.05, true));
+        assert!(!control.accepts(1.05, 1.1, true));
+        let (h, reaches_limit) = control.propose(0.0, 1.05);
+        assert!(h < 1.0 && !reaches_limit, "{h}");
+    }
+
+    /// Equal steps to a limit that is near, none to one that is far.
+    #[test]
+    fn a_near_limit_is_reached_in_equal_steps() {
+        let control = StepControl::new(3, 0.3, f64::INFINITY);
+        assert_eq!(control.propose(0.0, 1.0), (0.25, false));
+        assert_eq!(control.propose(0.0, 100.0), (0.3, false));
     }
 }
