@@ -119,6 +119,34 @@ fn a_stiff_force_with_derivatives_costs_no_steps() {
     assert!(steps < 1000, "{steps}");
 }
 
+/// A stiff force stands without any tether too, and `Auto` finds that implicit steps pay.
+#[test]
+fn auto_goes_implicit_for_a_stiff_force_without_a_tether() {
+    let mut simulator = Simulator::new();
+    simulator.add_plugin(&LeashPlugin);
+    let text = r#"(
+        name: "leashed", environment: (atmosphere: Vacuum),
+        entities: {
+            "stone": (
+                Body: (mass_kg: 5), Pose: (position_m: (0, 0, 100)),
+                Leash: (
+                    place_m: (0, 0, 100.001), stiffness_n_m: 1e6, damping_n_s_m: 1e4, derivatives: true,
+                ),
+            ),
+        },
+        run: (duration_s: 100, output_every_s: 100),
+    )"#;
+    let (results, summary) = run_for_summary(&simulator, &load(&simulator, text, &[]));
+    println!(
+        "{} steps, {} implicit",
+        summary.steps, summary.implicit_steps
+    );
+    assert!(summary.implicit_steps > 0 && summary.steps < 500);
+    // The weight over the stiffness below its place.
+    let sag = 100.001 - flight::position(&results, "stone", 100.0).z - 5.0 * 8.87 / 1e6;
+    assert_below("where the leash holds it", sag.abs(), 1e-6);
+}
+
 /// Two free bodies, a closed loop of two tethers between them and a third to an anchor: the elimination
 /// has spikes, fill and a body of its own.
 const LOOP: &str = r#"(

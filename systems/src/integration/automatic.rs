@@ -41,8 +41,6 @@ pub struct Automatic {
     implicit: Rosenbrock,
     explicit: RungeKutta43,
     mode: Option<Mode>,
-    /// Whether nothing is stiff enough to be tried implicitly.
-    explicit_only: bool,
     /// Time per attempt that the explicit method has advanced in its last burst, s.
     explicit_advance_s: f64,
     burst: u64,
@@ -51,7 +49,7 @@ pub struct Automatic {
 impl Automatic {
     /// For positions that are right to `accuracy_m` (m) in the end, with no step longer than
     /// `longest_step_s` (s); for states of `length` numbers whose explicit steps are stable to
-    /// `stable_step_s` (s), infinite where no tether is: then all is explicit.
+    /// `stable_step_s` (s), infinite where no tether is: then it begins explicitly.
     #[must_use]
     pub fn new(accuracy_m: f64, length: usize, longest_step_s: f64, stable_step_s: f64) -> Self {
         let explicit_step_s = longest_step_s.min(PART_OF_STABLE_STEP * stable_step_s);
@@ -59,7 +57,6 @@ impl Automatic {
             implicit: Rosenbrock::controlled(accuracy_m, length, longest_step_s),
             explicit: RungeKutta43::new(accuracy_m, length, explicit_step_s),
             mode: None,
-            explicit_only: stable_step_s.is_infinite(),
             explicit_advance_s: explicit_step_s,
             burst: FIRST_BURST,
         }
@@ -76,8 +73,9 @@ impl Automatic {
             since_s: time_s,
         };
         match self.mode {
-            None if self.explicit_only => Mode::Explicit {
-                left: u64::MAX,
+            // Without a tether the first burst shows what the explicit method is worth.
+            None if self.explicit_advance_s.is_infinite() => Mode::Explicit {
+                left: FIRST_BURST,
                 attempts: done,
                 since_s: time_s,
             },
