@@ -6,6 +6,7 @@
 //! |e_i| / (tolerance max(s_i, |y_i|)): s_i = 1 m, 1 m/s, 1 rad or 1 rad/s, and y_i counts
 //! displacement from the start, never the altitude.
 
+use super::controlled_step::{Verdict, controlled_step};
 use super::step_control::StepControl;
 use super::{
     Equations, Integrator, StepFailure, Trajectory, check_state, combine, first_not_finite,
@@ -75,16 +76,15 @@ impl DormandPrince {
         }
     }
 
-    /// Tries a step of `h` and leaves the result in `trial`, its rates in the last of `k`; returns
+    /// Tries a step to `end_s` and leaves the result in `trial`, its rates in the last of `k`; returns
     /// the scaled error and the place of its largest part.
     fn attempt(
         &mut self,
         equations: &mut dyn Equations,
         trajectory: &mut Trajectory,
-        h: f64,
         end_s: f64,
     ) -> Result<(f64, usize), StepFailure> {
-        let t = trajectory.time_s;
+        let (t, h) = (trajectory.time_s, end_s - trajectory.time_s);
         let (y0, k1) = (&trajectory.state, &trajectory.rates);
         let [k2, k3, k4, k5, k6, k7] = &mut self.k;
         let stage = &mut self.stage;
@@ -160,36 +160,18 @@ impl Integrator for DormandPrince {
         limit_s: f64,
     ) -> Result<(), StepFailure> {
         trajectory.refresh(equations)?;
-        loop {
-            let (h, reaches_limit) = self.control.propose(trajectory.time_s, limit_s);
-            let end_s = if reaches_limit {
-                limit_s
-            } else {
-                trajectory.time_s + h
-            };
-            let failure = match self.attempt(equations, trajectory, h, end_s) {
-                Ok((error, index)) => {
-                    if self.control.accepts(h, error, reaches_limit) {
-                        std::mem::swap(&mut trajectory.state, &mut self.trial);
-                        std::mem::swap(&mut trajectory.rates, &mut self.k[5]);
-                        trajectory.time_s = end_s;
-                        trajectory.cost.steps += 1;
-                        equations.accept(&mut trajectory.state, &mut trajectory.rates);
-                        return Ok(());
-                    }
-                    StepFailure::StepTooSmall { step_s: h, index }
-                }
-                // A trial step that goes astray is too long, unless it is already as short as can be.
-                Err(failure) => {
-                    self.control.failed(h);
-                    failure
-                }
-            };
-            trajectory.cost.rejected += 1;
-            if self.control.is_exhausted(trajectory.time_s) {
-                return Err(failure);
-            }
-        }
+        let mut control = self.control;
+        let outcome = controlled_step(&mut control, trajectory, limit_s, |trajectory, end_s| {
+            let (error, index) = self.attempt(equations, trajectory, end_s)?;
+            Ok(Verdict::Error(error, index))
+        });
+        self.control = control;
+        trajectory.time_s = outcome?;
+        trajectory.cost.steps += 1;
+        std::mem::swap(&mut trajectory.state, &mut self.trial);
+        std::mem::swap(&mut trajectory.rates, &mut self.k[5]);
+        equations.accept(&mut trajectory.state, &mut trajectory.rates);
+        Ok(())
     }
 }
 

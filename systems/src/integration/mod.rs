@@ -2,6 +2,7 @@
 //! asks them to solve for its stages.
 
 pub mod automatic;
+mod controlled_step;
 pub mod dormand_prince;
 mod ros34pw2;
 pub mod rosenbrock;

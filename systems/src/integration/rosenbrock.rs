@@ -16,6 +16,7 @@
 //! slack, when the mechanical energy has not risen by more than the work done and a thousandth of the
 //! kinetic energy: no method is stable in energy from slack to taut by itself.
 
+use super::controlled_step::{Verdict, controlled_step};
 use super::ros34pw2::{GAMMA, STAGES, Tableau};
 use super::step_control::StepControl;
 use super::{
@@ -36,7 +37,7 @@ const ENERGY_GAIN: f64 = 1e-3;
 const AFTER_GAIN: f64 = 0.5;
 
 /// How the step is chosen.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 enum Steps {
     /// By the error: the tolerance, m, and the control.
     Controlled(f64, StepControl),
@@ -183,15 +184,15 @@ impl Rosenbrock {
             largest = strain;
         }
         let (error, index) = largest;
-        // What is not a number is not accurate.
+        // What is not accurate is not worth an evaluation.
         if error.is_nan() || error > 1.0 {
-            return Ok(Verdict::Inaccurate(error, index));
+            return Ok(Verdict::Error(error, index));
         }
         self.evaluate_trial(equations, trajectory, end_s)?;
         if start.is_some_and(|start| start.gains(&equations.energy(), h)) {
-            return Ok(Verdict::GainsEnergy(index));
+            return Ok(Verdict::TooLong(AFTER_GAIN, index));
         }
-        Ok(Verdict::Good(error))
+        Ok(Verdict::Error(error, index))
     }
 
     fn take(&mut self, equations: &mut dyn Equations, trajectory: &mut Trajectory, end_s: f64) {
@@ -232,41 +233,12 @@ impl Rosenbrock {
         limit_s: f64,
     ) -> Result<(), StepFailure> {
         let start = equations.has_slack().then(|| equations.energy());
-        loop {
-            let (h, reaches_limit) = control.propose(trajectory.time_s, limit_s);
-            let end_s = if reaches_limit {
-                limit_s
-            } else {
-                trajectory.time_s + h
-            };
-            let outcome = self
-                .attempt(equations, trajectory, end_s)
-                .and_then(|()| self.judge(equations, trajectory, tolerance_m, start, end_s));
-            let failure = match outcome {
-                Ok(Verdict::Good(error)) => {
-                    control.accepts(h, error, reaches_limit);
-                    self.take(equations, trajectory, end_s);
-                    return Ok(());
-                }
-                Ok(Verdict::Inaccurate(error, index)) => {
-                    control.accepts(h, error, reaches_limit);
-                    StepFailure::StepTooSmall { step_s: h, index }
-                }
-                Ok(Verdict::GainsEnergy(index)) => {
-                    control.shorten(h, AFTER_GAIN);
-                    StepFailure::StepTooSmall { step_s: h, index }
-                }
-                // A trial step that goes astray is too long, unless it is already as short as can be.
-                Err(failure) => {
-                    control.failed(h);
-                    failure
-                }
-            };
-            trajectory.cost.rejected += 1;
-            if control.is_exhausted(trajectory.time_s) {
-                return Err(failure);
-            }
-        }
+        let outcome = controlled_step(control, trajectory, limit_s, |trajectory, end_s| {
+            self.attempt(equations, trajectory, end_s)?;
+            self.judge(equations, trajectory, tolerance_m, start, end_s)
+        });
+        self.take(equations, trajectory, outcome?);
+        Ok(())
     }
 }
 
@@ -275,16 +247,6 @@ impl Rosenbrock {
 fn strain_allowance(tolerance_m: f64) -> f64 {
     let ratio = tolerance_m / (PART_OF_ACCURACY * WHOLE_STRAIN_FROM_M);
     libm::cbrt(ratio * ratio).min(1.0)
-}
-
-/// What becomes of a step that was tried.
-enum Verdict {
-    /// It is taken; its scaled error.
-    Good(f64),
-    /// Its scaled error is too large; where.
-    Inaccurate(f64, usize),
-    /// It has made energy.
-    GainsEnergy(usize),
 }
 
 impl MechanicalEnergy {
@@ -307,11 +269,8 @@ impl Integrator for Rosenbrock {
         let switched = std::mem::take(&mut trajectory.has_switched);
         trajectory.refresh(equations)?;
         equations.linearise();
-        match std::mem::replace(&mut self.steps, Steps::Fixed(f64::INFINITY)) {
-            Steps::Fixed(step_s) => {
-                self.steps = Steps::Fixed(step_s);
-                self.step_fixed(equations, trajectory, step_s, limit_s)
-            }
+        match self.steps {
+            Steps::Fixed(step_s) => self.step_fixed(equations, trajectory, step_s, limit_s),
             Steps::Controlled(tolerance_m, mut control) => {
                 if switched {
                     control.restart(FIRST_STEP_S);

@@ -4,6 +4,7 @@
 //! embedded solution of third order with the weights 1/6, 1/3, 1/3, 1/15, 1/10; the difference is
 //! `h/10 (k4 - k5)`. It checks itself like the implicit method, in metres.
 
+use super::controlled_step::{Verdict, controlled_step};
 use super::step_control::StepControl;
 use super::{
     Equations, FIRST_STEP_S, Integrator, PART_OF_ACCURACY, StepFailure, Trajectory, check_state,
@@ -92,35 +93,17 @@ impl Integrator for RungeKutta43 {
             self.control.restart(FIRST_STEP_S);
         }
         trajectory.refresh(equations)?;
-        loop {
-            let (h, reaches_limit) = self.control.propose(trajectory.time_s, limit_s);
-            let end_s = if reaches_limit {
-                limit_s
-            } else {
-                trajectory.time_s + h
-            };
-            let failure = match self.attempt(equations, trajectory, end_s) {
-                Ok((error, index)) => {
-                    if self.control.accepts(h, error, reaches_limit) {
-                        std::mem::swap(&mut trajectory.state, &mut self.trial);
-                        std::mem::swap(&mut trajectory.rates, &mut self.k[3]);
-                        trajectory.time_s = end_s;
-                        trajectory.cost.steps += 1;
-                        equations.accept(&mut trajectory.state, &mut trajectory.rates);
-                        return Ok(());
-                    }
-                    StepFailure::StepTooSmall { step_s: h, index }
-                }
-                // A trial step that goes astray is too long, unless it is already as short as can be.
-                Err(failure) => {
-                    self.control.failed(h);
-                    failure
-                }
-            };
-            trajectory.cost.rejected += 1;
-            if self.control.is_exhausted(trajectory.time_s) {
-                return Err(failure);
-            }
-        }
+        let mut control = self.control;
+        let outcome = controlled_step(&mut control, trajectory, limit_s, |trajectory, end_s| {
+            let (error, index) = self.attempt(equations, trajectory, end_s)?;
+            Ok(Verdict::Error(error, index))
+        });
+        self.control = control;
+        trajectory.time_s = outcome?;
+        trajectory.cost.steps += 1;
+        std::mem::swap(&mut trajectory.state, &mut self.trial);
+        std::mem::swap(&mut trajectory.rates, &mut self.k[3]);
+        equations.accept(&mut trajectory.state, &mut trajectory.rates);
+        Ok(())
     }
 }

@@ -16,7 +16,7 @@ const FEW_STEPS: f64 = 4.0;
 const ROUND_OFF: f64 = 1e-14;
 
 /// Proposes steps and judges their errors.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct StepControl {
     order: f64,
     step_s: f64,
@@ -61,8 +61,12 @@ impl StepControl {
     /// Judges a step of `h` with the scaled error `error` (1 is the tolerance) and sets the next;
     /// `cut` says that a limit, not the error, chose the step.
     pub fn accepts(&mut self, h: f64, error: f64, cut: bool) -> bool {
-        // A perfect step must not make the next proposal infinite.
-        let error = error.max(1e-10);
+        // A perfect step must not make the next proposal infinite, and what is not a number is not good.
+        let error = if error.is_nan() {
+            f64::INFINITY
+        } else {
+            error.max(1e-10)
+        };
         if error > 1.0 {
             let factor = SAFETY * libm::pow(error, -1.0 / self.order);
             self.step_s = h * factor.max(SMALLEST_FACTOR);
