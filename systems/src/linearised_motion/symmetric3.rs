@@ -82,6 +82,44 @@ impl Symmetric3 {
         }
     }
 
+    /// `scale self`.
+    #[inline(always)]
+    #[must_use]
+    pub fn scaled(self, scale: f64) -> Self {
+        Self::default().plus_scaled(self, scale)
+    }
+
+    /// The determinant.
+    #[inline(always)]
+    #[must_use]
+    pub fn determinant(&self) -> f64 {
+        self.xx * (self.yy * self.zz - self.yz * self.yz)
+            + self.xy * (self.xz * self.yz - self.xy * self.zz)
+            + self.xz * (self.xy * self.yz - self.xz * self.yy)
+    }
+
+    /// `-[h] self [h]`, with `[h]` the cross-product matrix: `x'` times it times `y` is
+    /// `(x x h).self (y x h)`.
+    #[inline(always)]
+    #[must_use]
+    pub fn between_crosses(&self, h: DVec3) -> Self {
+        // Rows of [h]': x x h for the unit vectors x.
+        let (x, y, z) = (
+            DVec3::new(0.0, -h.z, h.y),
+            DVec3::new(h.z, 0.0, -h.x),
+            DVec3::new(-h.y, h.x, 0.0),
+        );
+        let (sx, sy, sz) = (self.times(x), self.times(y), self.times(z));
+        Self {
+            xx: x.dot(sx),
+            xy: x.dot(sy),
+            xz: x.dot(sz),
+            yy: y.dot(sy),
+            yz: y.dot(sz),
+            zz: z.dot(sz),
+        }
+    }
+
     /// The product with another symmetric matrix.
     #[inline(always)]
     #[must_use]

@@ -1,0 +1,308 @@
+//! The kinematic tree of a system of tethers: from a base outward, every tether a limb of links, every
+//! body but the base carried by one limb.
+//!
+//! The base of bodies that an anchor holds is the anchor; of others it is one of them. Limbs stand in
+//! order: one that carries a body comes before those which that body carries.
+
+use std::ops::Range;
+
+use super::articulated_link::Stretch;
+use crate::linearised_motion::topology::{End, Topology};
+
+/// A tether as a limb of the tree: `links.len()` links from its proximal to its distal end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limb {
+    /// The tether, as a line of the topology.
+    pub line: usize,
+    /// Its links among all, outward.
+    pub links: Range<usize>,
+    /// Whether its proximal end is the tether's `from`.
+    pub is_from_outward: bool,
+    /// Index of the proximal attachment among all tether points.
+    first_point: usize,
+    /// The body that carries it; an anchor does if there is none.
+    pub parent: Option<usize>,
+    /// The body that it carries.
+    pub child: usize,
+}
+
+impl Limb {
+    /// Index among all tether points of the distal end of its link `k`, from 0 outward.
+    #[inline]
+    #[must_use]
+    pub fn distal_point(&self, k: usize) -> usize {
+        if self.is_from_outward {
+            self.first_point + k + 1
+        } else {
+            self.first_point - k - 1
+        }
+    }
+
+    /// Index of its proximal attachment.
+    #[must_use]
+    pub fn proximal_point(&self) -> usize {
+        self.first_point
+    }
+
+    /// Index of its link `k` among segments, which have that of their point nearest to `from`.
+    #[inline]
+    #[must_use]
+    pub fn segment(&self, k: usize) -> usize {
+        if self.is_from_outward {
+            self.first_point + k
+        } else {
+            self.first_point - k - 1
+        }
+    }
+
+    /// 1 where the tether counts outward, -1 where it counts inward.
+    #[must_use]
+    pub fn sign(&self) -> f64 {
+        if self.is_from_outward { 1.0 } else { -1.0 }
+    }
+}
+
+/// What all links of one tether have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkKind {
+    /// Length; of an elastic link: at rest, m.
+    pub length_m: f64,
+    /// What a rod adds between its ends, -m/6; zero for a massless link, kg.
+    pub coupling_kg: f64,
+    /// Mass of a joint between two of them: of a rod, half of either beside it, kg.
+    pub joint_mass_kg: f64,
+    /// Whether they keep their length.
+    pub stretch: Stretch,
+}
+
+/// A tree, or several side by side.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KinematicTree {
+    /// The limbs, in order.
+    pub limbs: Vec<Limb>,
+    /// Of each limb.
+    pub kinds: Vec<LinkKind>,
+    /// Bodies that nothing carries.
+    pub bases: Vec<usize>,
+    /// The limb that carries each body.
+    pub carried_by: Vec<Option<usize>>,
+    /// Number of links.
+    pub links: usize,
+}
+
+/// Tethers that close a loop, as lines of the topology.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("tethers close a loop")]
+pub struct ClosedLoop {
+    /// The line by which a body is reached a second time.
+    pub line: usize,
+}
+
+impl KinematicTree {
+    /// The tree of a topology: `kinds` by line, `preferred` the bodies that are to be bases, the first of
+    /// a system first.
+    ///
+    /// # Errors
+    /// [`ClosedLoop`]; anchors count as one body.
+    pub fn new(
+        topology: &Topology,
+        kinds: &[LinkKind],
+        preferred: &[usize],
+    ) -> Result<Self, ClosedLoop> {
+        let mut growth = Growth {
+            topology,
+            used: vec![false; topology.lines.len()],
+            reached: vec![false; topology.bodies.len()],
+            tree: Self {
+                carried_by: vec![None; topology.bodies.len()],
+                ..Self::default()
+            },
+        };
+        for (index, line) in topology.lines.iter().enumerate() {
+            if line.from == End::Held || line.to == End::Held {
+                growth.grow_along(index, None)?;
+            }
+        }
+        // The limbs of anchors are grown level by level, then those of each free base.
+        growth.grow_from(0)?;
+        for body in preferred.iter().copied().chain(0..topology.bodies.len()) {
+            if !growth.reached[body] {
+                growth.reached[body] = true;
+                growth.tree.bases.push(body);
+                let first = growth.tree.limbs.len();
+                growth.grow_beyond(body)?;
+                growth.grow_from(first)?;
+            }
+        }
+        let mut tree = growth.tree;
+        tree.kinds = tree.limbs.iter().map(|limb| kinds[limb.line]).collect();
+        Ok(tree)
+    }
+}
+
+/// A tree on its way.
+struct Growth<'a> {
+    topology: &'a Topology,
+    used: Vec<bool>,
+    reached: Vec<bool>,
+    tree: KinematicTree,
+}
+
+impl Growth<'_> {
+    /// Grows beyond every limb from `first` on.
+    fn grow_from(&mut self, first: usize) -> Result<(), ClosedLoop> {
+        let mut next = first;
+        while let Some(limb) = self.tree.limbs.get(next) {
+            self.grow_beyond(limb.child)?;
+            next += 1;
+        }
+        Ok(())
+    }
+
+    /// Grows all limbs that a body carries.
+    fn grow_beyond(&mut self, body: usize) -> Result<(), ClosedLoop> {
+        let end = End::OnBody(body);
+        for index in 0..self.topology.lines.len() {
+            let line = &self.topology.lines[index];
+            if !self.used[index] && (line.from == end || line.to == end) {
+                self.grow_along(index, Some(body))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a tether that `parent` carries.
+    fn grow_along(&mut self, index: usize, parent: Option<usize>) -> Result<(), ClosedLoop> {
+        let line = self.topology.lines[index];
+        let proximal = parent.map_or(End::Held, End::OnBody);
+        let is_from_outward = line.from == proximal;
+        let distal = if is_from_outward { line.to } else { line.from };
+        let End::OnBody(child) = distal else {
+            return Err(ClosedLoop { line: index });
+        };
+        if self.reached[child] {
+            return Err(ClosedLoop { line: index });
+        }
+        self.used[index] = true;
+        self.reached[child] = true;
+        let links = self.tree.links..self.tree.links + line.nodes + 1;
+        self.tree.links = links.end;
+        self.tree.carried_by[child] = Some(self.tree.limbs.len());
+        self.tree.limbs.push(Limb {
+            line: index,
+            links,
+            is_from_outward,
+            first_point: if is_from_outward {
+                line.first_point
+            } else {
+                line.last_point()
+            },
+            parent,
+            child,
+        });
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linearised_motion::topology::{BodySite, Line};
+
+    fn topology(bodies: usize, ends: &[(End, End)]) -> Topology {
+        let mut lines = Vec::new();
+        let mut first_point = 0;
+        for (from, to) in ends {
+            lines.push(Line {
+                first_point,
+                nodes: 2,
+                first_state: 0,
+                from: *from,
+                to: *to,
+            });
+            first_point += 4;
+        }
+        let body = BodySite {
+            first_state: 0,
+            turns: true,
+            arm_m: 1.0,
+        };
+        Topology {
+            lines,
+            bodies: vec![body; bodies],
+            points: first_point,
+            coordinates: 0,
+        }
+    }
+
+    fn kinds(count: usize) -> Vec<LinkKind> {
+        let kind = LinkKind {
+            length_m: 1.0,
+            coupling_kg: 0.0,
+            joint_mass_kg: 1.0,
+            stretch: Stretch::Rigid,
+        };
+        vec![kind; count]
+    }
+
+    #[test]
+    fn branches_grow_outward_from_the_base() {
+        use End::OnBody;
+        let t = topology(
+            4,
+            &[
+                (OnBody(0), OnBody(1)),
+                (OnBody(1), OnBody(2)),
+                (OnBody(3), OnBody(1)),
+            ],
+        );
+        let tree = KinematicTree::new(&t, &kinds(3), &[1]).expect("a tree");
+        assert_eq!(tree.bases, [1]);
+        let order: Vec<_> = tree
+            .limbs
+            .iter()
+            .map(|limb| (limb.line, limb.parent, limb.child, limb.is_from_outward))
+            .collect();
+        let expected = [
+            (0, Some(1), 0, false),
+            (1, Some(1), 2, true),
+            (2, Some(1), 3, false),
+        ];
+        assert_eq!(order, expected);
+        assert_eq!(tree.limbs[0].proximal_point(), 3);
+        assert_eq!(tree.limbs[0].distal_point(2), 0);
+        assert_eq!(tree.limbs[1].distal_point(2), 7);
+        assert_eq!((tree.limbs[0].segment(0), tree.limbs[1].segment(0)), (2, 4));
+    }
+
+    #[test]
+    fn an_anchor_is_the_base_of_what_it_holds() {
+        use End::{Held, OnBody};
+        let t = topology(3, &[(OnBody(1), OnBody(0)), (OnBody(1), Held)]);
+        let tree = KinematicTree::new(&t, &kinds(2), &[0]).expect("a tree");
+        assert_eq!(tree.bases, [2]);
+        assert_eq!(tree.carried_by, [Some(1), Some(0), None]);
+    }
+
+    #[test]
+    fn loops_are_refused_also_through_anchors() {
+        use End::{Held, OnBody};
+        let ring = [
+            (OnBody(0), OnBody(1)),
+            (OnBody(1), OnBody(2)),
+            (OnBody(2), OnBody(0)),
+        ];
+        let by_anchors = [(Held, OnBody(0)), (OnBody(0), OnBody(1)), (OnBody(1), Held)];
+        let double = [(OnBody(0), OnBody(1)), (OnBody(0), OnBody(1))];
+        for (bodies, ends, line) in [
+            (3, &ring[..], 1),
+            (2, &by_anchors[..], 1),
+            (2, &double[..], 1),
+            (0, &[(Held, Held)][..], 0),
+        ] {
+            let t = topology(bodies, ends);
+            let found = KinematicTree::new(&t, &kinds(ends.len()), &[]);
+            assert_eq!(found.map_err(|closed| closed.line).err(), Some(line));
+        }
+    }
+}
