@@ -13,6 +13,16 @@ pub struct RunSpec {
     /// Which equations move the tethers.
     #[serde(default)]
     pub formulation: Formulation,
+    /// Of what the links of `Denoc` are made.
+    #[serde(default)]
+    pub links: LinkMass,
+    /// Whether the links of `Denoc` stretch by the tether's stiffness and damping; rigid unless said.
+    #[serde(default)]
+    pub elastic_links: bool,
+    /// The body from which the tree of `Denoc` grows. Unless given it is the one called `gondola`, or else
+    /// the one with most tethers; an anchor always is. It changes nothing but round-off.
+    #[serde(default)]
+    pub base: Option<String>,
     /// Simulated time, s.
     pub duration_s: f64,
     /// Time between outputs, s; output k stands at k times this.
@@ -81,6 +91,18 @@ impl Formulation {
             Self::Denoc => "denoc",
         }
     }
+}
+
+/// Of what the links of the second formulation are made.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename = "links")]
+pub enum LinkMass {
+    /// Uniform thin rods, whatever the tether's `lumping` says.
+    #[default]
+    Rod,
+    /// Massless links with point masses at the joints, and at the ends as the tether's `lumping` says: what
+    /// the lumped formulation becomes where tethers do not stretch.
+    PointMass,
 }
 
 /// The integrator and its accuracy.

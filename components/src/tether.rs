@@ -81,19 +81,19 @@ impl Tether {
         self.damping_n_s_m * f64::from(self.segments())
     }
 
-    /// Mass of an interior node, kg.
+    /// Mass of an interior node by a lumping, kg.
     #[must_use]
-    pub fn node_mass_kg(&self) -> f64 {
-        match self.lumping {
+    pub fn node_mass_kg(&self, lumping: Lumping) -> f64 {
+        match lumping {
             Lumping::HalfSegment => self.mass_kg() / f64::from(self.segments()),
             Lumping::Interior => self.mass_kg() / f64::from(self.nodes.max(1)),
         }
     }
 
-    /// Mass that goes to each attachment, kg.
+    /// Mass that goes to each attachment by a lumping, kg.
     #[must_use]
-    pub fn end_mass_kg(&self) -> f64 {
-        match self.lumping {
+    pub fn end_mass_kg(&self, lumping: Lumping) -> f64 {
+        match lumping {
             Lumping::HalfSegment => 0.5 * self.mass_kg() / f64::from(self.segments()),
             Lumping::Interior => 0.0,
         }
@@ -102,7 +102,8 @@ impl Tether {
     /// Mass that hangs in the scene because of this tether, kg.
     #[must_use]
     pub fn lumped_mass_kg(&self) -> f64 {
-        self.node_mass_kg() * f64::from(self.nodes) + 2.0 * self.end_mass_kg()
+        self.node_mass_kg(self.lumping) * f64::from(self.nodes)
+            + 2.0 * self.end_mass_kg(self.lumping)
     }
 }
 

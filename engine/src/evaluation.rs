@@ -4,7 +4,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use aerobot_systems::clock::Clock;
-use aerobot_systems::dynamics::state_vector::StateVector;
+use aerobot_systems::dynamics::state_space::StateSpace;
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::fault::{Fault, FaultSlot};
 use aerobot_systems::integration::{
@@ -18,12 +18,9 @@ use crate::linearisation::Linearisation;
 use crate::sequence::Sequence;
 use crate::world::{Discontinuity, Edges};
 
-/// The Evaluate schedule with what carries states to and from it.
+/// The Evaluate schedule.
 pub struct Evaluation {
-    /// The Evaluate schedule.
     pub(crate) schedule: Sequence,
-    /// Gathers and scatters states.
-    pub(crate) state: StateVector,
 }
 
 /// Derivatives and solutions for implicit steps.
@@ -53,6 +50,8 @@ pub struct WorldEquations<'a> {
     pub world: &'a mut World,
     /// Its Evaluate schedule.
     pub evaluation: &'a mut Evaluation,
+    /// Carries states to and from its components.
+    pub(crate) state: &'a mut dyn StateSpace,
     /// Its derivatives, for implicit steps.
     pub(crate) implicit: &'a mut Implicit,
 }
@@ -60,14 +59,14 @@ pub struct WorldEquations<'a> {
 impl Equations for WorldEquations<'_> {
     fn rates(&mut self, time_s: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Fault> {
         self.world.resource_mut::<Clock>().time_s = time_s;
-        self.evaluation.state.scatter(self.world, state);
+        self.state.scatter(self.world, state)?;
         self.evaluation.run(self.world)?;
-        self.evaluation.state.gather_rates(self.world, state, rates);
+        self.state.gather_rates(self.world, state, rates);
         Ok(())
     }
 
     fn accept(&mut self, state: &mut [f64], rates: &mut [f64]) {
-        self.evaluation.state.recentre(self.world, state, rates);
+        self.state.recentre(self.world, state, rates);
     }
 
     fn linearise(&mut self) {
@@ -108,6 +107,11 @@ impl Equations for WorldEquations<'_> {
 pub struct Integration {
     /// The world's equations.
     pub evaluation: Evaluation,
+    /// The forces of the lumped formulation, where another moves the world: what is at rest is found with
+    /// them.
+    pub(crate) statics: Option<Evaluation>,
+    /// Carries states to and from the components.
+    pub(crate) state: Box<dyn StateSpace>,
     /// What implicit steps need besides.
     pub(crate) implicit: Implicit,
     /// The method.
@@ -166,26 +170,30 @@ pub fn integrate(world: &mut World) {
 fn restore(world: &mut World, integration: &mut Integration) {
     let Integration {
         evaluation,
+        state,
         trajectory,
         ..
     } = integration;
     world.resource_mut::<Clock>().time_s = trajectory.time_s;
-    evaluation.state.scatter(world, &trajectory.state);
     // A state that could be evaluated once can be again; the initial one may be at fault itself.
-    let _ = evaluation.run(world);
+    let _ = state
+        .scatter(world, &trajectory.state)
+        .and_then(|()| evaluation.run(world));
 }
 
 fn advance(world: &mut World, integration: &mut Integration) -> Result<(), StepFailure> {
     let Integration {
         evaluation,
+        state,
         implicit,
         integrator,
         trajectory,
         limit_s,
         ..
     } = integration;
+    let state = &mut **state;
     if std::mem::take(&mut world.resource_mut::<Discontinuity>().0) {
-        evaluation.state.gather(world, &mut trajectory.state);
+        state.gather(world, &mut trajectory.state);
         trajectory.switch();
     }
     begin_interval(world, trajectory);
@@ -194,6 +202,7 @@ fn advance(world: &mut World, integration: &mut Integration) -> Result<(), StepF
         let mut equations = WorldEquations {
             world,
             evaluation,
+            state,
             implicit,
         };
         integrator.step(&mut equations, trajectory, *limit_s)?;
@@ -203,6 +212,7 @@ fn advance(world: &mut World, integration: &mut Integration) -> Result<(), StepF
     trajectory.refresh(&mut WorldEquations {
         world,
         evaluation,
+        state,
         implicit,
     })
 }

@@ -1,39 +1,26 @@
 //! The world linearised: the Linearise schedule, and the way of its derivatives into flat arrays.
 
-use std::collections::BTreeMap;
-
 use aerobot_components::body::Anchor;
 use aerobot_components::derivatives::{ForceDerivatives, SegmentDerivatives, TorqueDerivatives};
 use aerobot_components::segment::{KelvinVoigt, Segment, SegmentGeometry, Tension};
 use aerobot_components::state::{
     AddedInertia, Attitude, Force, Inertia, Mass, Position, StateIndex,
 };
-use aerobot_components::tether::{Attachment, TetherNode, TetherParts, TetherPoint, TetherSide};
+use aerobot_components::tether::{Attachment, TetherNode, TetherPoint};
 use aerobot_systems::dynamics::rigid_body::CarriedMass;
-use aerobot_systems::dynamics::state_vector::{Layout, StateVector};
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::linearised_motion::body_block::{BodyBlock, Place};
 use aerobot_systems::linearised_motion::derivatives::{Derivatives, LinearSegment};
 use aerobot_systems::linearised_motion::error_norm::{position_error, strain_error};
-use aerobot_systems::linearised_motion::shifted_system::ShiftedSystem;
+use aerobot_systems::linearised_motion::stage_solver::{Change, StageSolver};
 use aerobot_systems::linearised_motion::symmetric3::Symmetric3;
-use aerobot_systems::linearised_motion::topology::{BodySite, End, Line, Topology};
-use bevy_ecs::component::Component;
-use bevy_ecs::entity::Entity;
+use aerobot_systems::linearised_motion::topology::{BodyIndex, Topology};
 use bevy_ecs::query::{QueryState, With, Without};
 use bevy_ecs::world::World;
 use glam::DMat3;
 
-use crate::scene::SetupError;
 use crate::sequence::Sequence;
-
-/// Place of a free body among those of the linearised motion.
-#[derive(Component, Clone, Copy, Debug)]
-struct LinearIndex(usize);
-
-/// Place of an attachment on a free body: line and side.
-#[derive(Component, Clone, Copy, Debug)]
-struct LineEnd(usize, usize);
+use crate::topology::LineEnd;
 
 type Segments = (
     &'static Segment,
@@ -42,7 +29,7 @@ type Segments = (
     &'static SegmentDerivatives,
 );
 type Bodies = (
-    &'static LinearIndex,
+    &'static BodyIndex,
     &'static Mass,
     &'static AddedInertia,
     Option<&'static Inertia>,
@@ -55,7 +42,8 @@ type Bodies = (
 /// The Linearise schedule with what carries its result to the solver.
 pub(crate) struct Linearisation {
     schedule: Sequence,
-    system: ShiftedSystem,
+    topology: Topology,
+    solver: Box<dyn StageSolver>,
     derivatives: Derivatives,
     /// Tensions below this say nothing of a strain error, N.
     least_tension_n: f64,
@@ -71,20 +59,15 @@ pub(crate) struct Linearisation {
 }
 
 impl Linearisation {
-    /// For a world whose state has been laid out; empty where the integrator never asks for it.
+    /// For a world of this topology, which is empty where the integrator never asks; with the errors of
+    /// first-order states that matter as much as 1 m.
     pub(crate) fn new(
         world: &mut World,
         schedule: Sequence,
-        state: &mut StateVector,
-        is_needed: bool,
-    ) -> Result<Self, SetupError> {
-        let layout = state.layout();
-        let first_order_scales = state.error_scales(world).split_off(2 * layout.coordinates);
-        let topology = if is_needed {
-            topology(world, layout)?
-        } else {
-            Topology::default()
-        };
+        first_order_scales: Vec<f64>,
+        topology: Topology,
+        solver: Box<dyn StageSolver>,
+    ) -> Self {
         let mut derivatives = Derivatives::new(&topology);
         let mut masses = world.query_filtered::<(&TetherPoint, &Mass), With<TetherNode>>();
         for (point, mass) in masses.iter(world) {
@@ -96,10 +79,11 @@ impl Linearisation {
             .resource::<EnvironmentModel>()
             .gravity
             .acceleration_m_s2(0.0);
-        Ok(Self {
+        Self {
             least_tension_n: least_tension_n(world),
             schedule,
-            system: ShiftedSystem::new(topology),
+            topology,
+            solver,
             derivatives,
             first_order_scales,
             has_slack: false,
@@ -108,7 +92,7 @@ impl Linearisation {
             bodies: world.query_filtered(),
             ends: world.query(),
             attitudes: world.query(),
-        })
+        }
     }
 
     /// Finds masses and derivatives at the state that was evaluated last.
@@ -180,156 +164,56 @@ impl Linearisation {
             at.offset_m = attachment.offset_m;
             at.load_n = attitude.0.conjugate() * force.0;
         }
-        derivatives.load_bodies(self.system.topology());
+        derivatives.load_bodies(&self.topology);
     }
 
     /// Factorises the matrix of a step; the place in the state where that fails.
     pub(crate) fn factorise(&mut self, step_s: f64, gamma: f64) -> Result<(), usize> {
-        self.system
+        self.solver
             .factorise(&self.derivatives, step_s, gamma)
             .map_err(|at| at.index)
     }
 
     /// Solves for the increments of a stage.
     pub(crate) fn solve(&mut self, r: &mut [f64]) {
-        self.system.solve(&self.derivatives, r);
+        self.solver.solve(&self.derivatives, r);
     }
 
     /// The largest error of positions and of first-order states over the tolerance.
-    pub(crate) fn position_error(&self, error: &[f64], tolerance_m: f64) -> (f64, usize) {
-        let topology = self.system.topology();
-        let mut largest = position_error(topology, error, self.has_slack);
-        let first = 2 * topology.coordinates;
+    pub(crate) fn position_error(&mut self, error: &[f64], tolerance_m: f64) -> (f64, usize) {
+        self.solver
+            .displace(&self.derivatives, error, Change::Error);
+        let moved = self.solver.displaced(error, Change::Error);
+        let (mut largest, coordinate) = position_error(&self.topology, moved, self.has_slack);
+        let mut place = self.solver.place(coordinate);
+        let first = error.len() - self.first_order_scales.len();
         for (k, (error, scale)) in error[first..]
             .iter()
             .zip(&self.first_order_scales)
             .enumerate()
         {
             let in_metres = error.abs() / scale;
-            if in_metres > largest.0 {
-                largest = (in_metres, first + k);
+            if in_metres > largest {
+                (largest, place) = (in_metres, first + k);
             }
         }
-        (largest.0 / tolerance_m, largest.1)
+        (largest / tolerance_m, place)
     }
 
     /// The largest error of a segment's tension over what is allowed.
-    pub(crate) fn strain_error(&self, error: &[f64], increment: &[f64]) -> (f64, usize) {
-        let topology = self.system.topology();
-        strain_error(
-            topology,
-            &self.derivatives,
-            error,
-            increment,
-            self.least_tension_n,
-        )
-    }
-}
-
-/// What is joined to what; leaves [`LinearIndex`] on free bodies and [`LineEnd`] on their ends.
-fn topology(world: &mut World, layout: Layout) -> Result<Topology, SetupError> {
-    let mut free: Vec<(usize, Entity)> = world
-        .query_filtered::<(&StateIndex, Entity), Without<TetherNode>>()
-        .iter(world)
-        .map(|(index, entity)| (index.0, entity))
-        .collect();
-    free.sort_unstable();
-    let mut indices = BTreeMap::new();
-    let mut bodies = Vec::new();
-    for (index, (first_state, entity)) in free.into_iter().enumerate() {
-        indices.insert(entity, index);
-        bodies.push(BodySite {
-            first_state,
-            turns: world.get::<Inertia>(entity).is_some(),
-            arm_m: gyration_radius_m(world, entity),
-        });
-        world.entity_mut(entity).insert(LinearIndex(index));
-    }
-    let mut tethers: Vec<TetherParts> =
-        world.query::<&TetherParts>().iter(world).cloned().collect();
-    let first_point = |world: &World, parts: &TetherParts| {
-        let point = parts.points.first()?;
-        Some(world.get::<TetherPoint>(*point)?.index)
-    };
-    tethers.sort_by_key(|parts| first_point(world, parts));
-    let mut lines = Vec::new();
-    let mut points = 0;
-    for parts in &tethers {
-        let Some(first_point) = first_point(world, parts) else {
-            continue;
-        };
-        let nodes = parts.points.len() - 2;
-        let index = lines.len();
-        let mut ends = [End::Held; 2];
-        for point in [parts.points.first(), parts.points.last()]
-            .into_iter()
-            .flatten()
-        {
-            let Some(end) = world.get::<Attachment>(*point).copied() else {
-                continue;
-            };
-            let Some(body) = indices.get(&end.carrier).copied() else {
-                continue;
-            };
-            let side = usize::from(end.side == TetherSide::To);
-            ends[side] = End::OnBody(body);
-            world.entity_mut(*point).insert(LineEnd(index, side));
-            bodies[body].arm_m = bodies[body].arm_m.max(end.offset_m.length());
+    pub(crate) fn strain_error(&mut self, error: &[f64], increment: &[f64]) -> (f64, usize) {
+        for (change, of) in [(error, Change::Error), (increment, Change::Increment)] {
+            self.solver.displace(&self.derivatives, change, of);
         }
-        lines.push(Line {
-            first_point,
-            nodes,
-            first_state: first_state(world, parts)?,
-            from: ends[0],
-            to: ends[1],
-        });
-        points = points.max(first_point + nodes + 2);
+        let (largest, coordinate) = strain_error(
+            &self.topology,
+            &self.derivatives,
+            self.solver.displaced(error, Change::Error),
+            self.solver.displaced(increment, Change::Increment),
+            self.least_tension_n,
+        );
+        (largest, self.solver.place(coordinate))
     }
-    Ok(Topology {
-        lines,
-        bodies,
-        points,
-        coordinates: layout.coordinates,
-    })
-}
-
-/// Where the nodes of a tether begin in the state, in which they must be consecutive.
-fn first_state(world: &World, parts: &TetherParts) -> Result<usize, SetupError> {
-    let nodes = &parts.points[1..parts.points.len() - 1];
-    let places = nodes
-        .iter()
-        .filter_map(|node| world.get::<StateIndex>(*node));
-    let Some(first) = places.clone().next().map(|place| place.0) else {
-        return Ok(0);
-    };
-    let in_order = places
-        .enumerate()
-        .all(|(k, place)| place.0 == first + 3 * k);
-    if in_order {
-        Ok(first)
-    } else {
-        Err(SetupError::new(
-            "entities",
-            "a plugin has held a node of a tether, or changed the order of nodes",
-            "hold bodies, not nodes, or use `Adaptive()`",
-        ))
-    }
-}
-
-/// By how much an error of attitude moves a body, m: its largest radius of gyration.
-fn gyration_radius_m(world: &World, body: Entity) -> f64 {
-    let Some(mass) = world.get::<Mass>(body) else {
-        return 0.0;
-    };
-    world.get::<Inertia>(body).map_or(0.0, |inertia| {
-        let diagonal = inertia
-            .0
-            .x_axis
-            .x
-            .max(inertia.0.y_axis.y)
-            .max(inertia.0.z_axis.z);
-        (diagonal / mass.0).sqrt()
-    })
 }
 
 /// The weight of the heaviest body, N; without weight, the tension of a strain of 1e-6.

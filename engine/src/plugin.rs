@@ -5,6 +5,7 @@ use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::system::ScheduleSystem;
 use bevy_ecs::world::World;
 
+use aerobot_components::run::Formulation;
 use aerobot_components::scene_component::{FieldReport, SceneComponent};
 
 use crate::builtin;
@@ -120,6 +121,22 @@ impl Simulator {
         &mut self,
         phase: Phase,
         needed: impl Fn(&Scene) -> bool + Send + Sync + 'static,
+        systems: impl Fn() -> C + Send + Sync + 'static,
+    ) -> &mut Self
+    where
+        C: IntoScheduleConfigs<ScheduleSystem, M>,
+        M: 'static,
+    {
+        self.add_systems_in(phase, move |scene, _| needed(scene), systems)
+    }
+
+    /// As [`Simulator::add_systems_if`], with a condition on the formulation for which a schedule is made:
+    /// only what moves bodies and tethers ever needs it. (States of rest are found with the forces of the
+    /// lumped formulation in either.)
+    pub fn add_systems_in<C, M>(
+        &mut self,
+        phase: Phase,
+        needed: impl Fn(&Scene, Formulation) -> bool + Send + Sync + 'static,
         systems: impl Fn() -> C + Send + Sync + 'static,
     ) -> &mut Self
     where

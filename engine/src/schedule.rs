@@ -19,6 +19,7 @@
 //! Within a phase, systems run in the order in which they were registered, so that sums have the same
 //! bits under every shuffle; an ambiguity inside one registration is an error.
 
+use aerobot_components::run::Formulation;
 use bevy_ecs::schedule::{
     IntoScheduleConfigs, LogLevel, Schedule, ScheduleBuildSettings, ScheduleLabel, SystemSet,
 };
@@ -92,12 +93,12 @@ pub(crate) struct Registered(usize);
 /// One call of [`Simulator::add_systems`](crate::plugin::Simulator::add_systems).
 pub(crate) struct Registration {
     pub(crate) phase: Phase,
-    pub(crate) needed: Box<dyn Fn(&Scene) -> bool + Send + Sync>,
+    pub(crate) needed: Box<dyn Fn(&Scene, Formulation) -> bool + Send + Sync>,
     pub(crate) add: Box<dyn Fn(&mut Schedule, Registered) + Send + Sync>,
 }
 
-/// The systems of the schedule `label` of `phases` from all registrations that `scene` needs, checked for
-/// ambiguities.
+/// The systems of the schedule `label` of `phases` from all registrations that `scene` needs in a
+/// formulation, checked for ambiguities.
 ///
 /// # Errors
 /// The text of an ambiguity or of a cycle.
@@ -105,10 +106,11 @@ pub(crate) fn build(
     label: impl ScheduleLabel + Clone,
     phases: &[Phase],
     simulator: &Simulator,
-    scene: &Scene,
+    (scene, formulation): (&Scene, Formulation),
     world: &mut World,
 ) -> Result<Sequence, String> {
-    Sequence::new(|| assemble(label.clone(), phases, simulator, scene), world)
+    let assemble = || assemble(label.clone(), phases, simulator, (scene, formulation));
+    Sequence::new(assemble, world)
 }
 
 /// The schedule, not yet ordered.
@@ -116,7 +118,7 @@ fn assemble(
     label: impl ScheduleLabel,
     phases: &[Phase],
     simulator: &Simulator,
-    scene: &Scene,
+    (scene, formulation): (&Scene, Formulation),
 ) -> Schedule {
     let mut schedule = Schedule::new(label);
     schedule.set_build_settings(ScheduleBuildSettings {
@@ -127,7 +129,7 @@ fn assemble(
     let mut before: Option<Registered> = None;
     for phase in phases {
         for (index, registration) in simulator.systems.iter().enumerate() {
-            if registration.phase != *phase || !(registration.needed)(scene) {
+            if registration.phase != *phase || !(registration.needed)(scene, formulation) {
                 continue;
             }
             let set = Registered(index);

@@ -1,22 +1,32 @@
 //! A simulation: the world of one scene, built, and the loop that runs it.
 
+use aerobot_components::run::Formulation;
 use aerobot_components::sampling::Sampling;
 use aerobot_systems::clock::Clock;
+use aerobot_systems::denoc::stage_system::LinkStages;
+use aerobot_systems::dynamics::joint_vector::JointVector;
+use aerobot_systems::dynamics::state_space::{Layout, StateSpace};
 use aerobot_systems::dynamics::state_vector::StateVector;
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::fault::{Fault, FaultSlot};
 use aerobot_systems::instruments::energy_guard::mechanical_energy;
 use aerobot_systems::integration::{Cost, Equations, StepFailure, Trajectory};
+use aerobot_systems::linearised_motion::shifted_system::ShiftedSystem;
+use aerobot_systems::linearised_motion::stage_solver::StageSolver;
+use aerobot_systems::linearised_motion::topology::Topology;
 use bevy_ecs::query::QueryState;
 use bevy_ecs::world::World;
 
 use crate::builtin::channels::find_supports;
 use crate::builtin::recorder::Recorder;
+use crate::builtin::tethers::has_links;
 use crate::evaluation::{
     Evaluation, Implicit, Integration, IntegrationSlot, WorldEquations, with_integration,
 };
 use crate::integrator_choice::{Choice, choose_integrator, is_linearised};
 use crate::linearisation::Linearisation;
+use crate::link_start::Start;
+use crate::link_tree;
 use crate::placement;
 use crate::plugin::Simulator;
 use crate::recording::frame::ResultSink;
@@ -26,6 +36,7 @@ use crate::schedule::{self, EVALUATE, Evaluate, LINEARISE, Linearise, STEP, Step
 use crate::sequence::Sequence;
 use crate::stable_step::{self, StableStep};
 use crate::stopping::owner_name;
+use crate::topology;
 use crate::world::{Edges, build_world, lay_out_state};
 
 /// A built simulation.
@@ -56,50 +67,60 @@ impl Simulator {
     pub fn build(&self, scene: &Scene) -> Result<Simulation, SceneError> {
         let mut world = build_world(self, scene).map_err(|error| scene.refuse(error))?;
         let layout = lay_out_state(&mut world);
-        let mut evaluation = Evaluation {
-            schedule: schedule::build(Evaluate, &EVALUATE, self, scene, &mut world)
-                .map_err(unordered)?,
-            state: StateVector::new(&mut world, layout),
+        let formulation = scene.run.formulation;
+        let evaluate = |formulation, world: &mut World| {
+            let schedule = schedule::build(Evaluate, &EVALUATE, self, (scene, formulation), world);
+            Ok::<_, SceneError>(Evaluation {
+                schedule: schedule.map_err(unordered)?,
+            })
         };
-        let step = schedule::build(Step, &STEP, self, scene, &mut world).map_err(unordered)?;
-        placement::place(&mut world, &mut evaluation, scene)
-            .map_err(|error| scene.refuse(error))?;
+        let mut evaluation = evaluate(formulation, &mut world)?;
+        let mut statics = match formulation {
+            Formulation::LumpedMass => None,
+            Formulation::Denoc => Some(evaluate(Formulation::LumpedMass, &mut world)?),
+        };
+        let of_scene = (scene, formulation);
+        let step = schedule::build(Step, &STEP, self, of_scene, &mut world).map_err(unordered)?;
+        let linearise = schedule::build(Linearise, &LINEARISE, self, of_scene, &mut world)
+            .map_err(unordered)?;
+        let forces = statics.as_mut().unwrap_or(&mut evaluation);
+        placement::place(&mut world, forces, scene).map_err(|error| scene.refuse(error))?;
         find_supports(&mut world);
         start_environment(&mut world);
-        evaluation.run(&mut world).map_err(|fault| {
-            let name = fault.entity.and_then(|entity| owner_name(&world, entity));
-            let path = name
-                .as_ref()
-                .map_or_else(String::new, |name| format!("entities.{name}"));
-            let who = name.map_or_else(String::new, |name| format!("`{name}`: "));
-            scene.refuse(SetupError::new(path, format!("{who}{}", fault.message), ""))
-        })?;
+        let Coordinates {
+            mut state,
+            topology,
+            solver,
+        } = coordinates(&mut world, scene, layout).map_err(|error| scene.refuse(error))?;
+        let mut trajectory = Trajectory::new(0.0, vec![0.0; state.layout().len()]);
+        let start = Start::of(&mut world);
+        state.gather(&mut world, &mut trajectory.state);
+        state
+            .scatter(&mut world, &trajectory.state)
+            .and_then(|()| evaluation.run(&mut world))
+            .map_err(|fault| not_evaluated(&world, scene, &fault))?;
+        start
+            .check(&mut world)
+            .map_err(|error| scene.refuse(error))?;
         let stable_step = stable_step::find(&mut world);
-        let derivatives =
-            schedule::build(Linearise, &LINEARISE, self, scene, &mut world).map_err(unordered)?;
+        let scales = state.error_scales(&mut world);
+        let first_order = scales[2 * state.layout().coordinates..].to_vec();
         let implicit = Implicit {
-            linearisation: Linearisation::new(
-                &mut world,
-                derivatives,
-                &mut evaluation.state,
-                is_linearised(&scene.run.integrator),
-            )
-            .map_err(|error| scene.refuse(error))?,
+            linearisation: Linearisation::new(&mut world, linearise, first_order, topology, solver),
             energy: world.register_system(mechanical_energy),
         };
-        let scales = evaluation.state.error_scales(&mut world);
         let Choice {
             integrator,
             step_s,
             description,
         } = choose_integrator(scene, &stable_step, scales)?;
-        let mut state = vec![0.0; layout.len()];
-        evaluation.state.gather(&mut world, &mut state);
         world.insert_resource(IntegrationSlot::new(Integration {
             evaluation,
+            statics,
+            state,
             implicit,
             integrator,
-            trajectory: Trajectory::new(0.0, state),
+            trajectory,
             limit_s: 0.0,
             failure: None,
         }));
@@ -118,6 +139,54 @@ impl Simulator {
             step_s,
         })
     }
+}
+
+/// What a formulation counts motion in.
+struct Coordinates {
+    state: Box<dyn StateSpace>,
+    /// Empty where the integrator never asks for it.
+    topology: Topology,
+    solver: Box<dyn StageSolver>,
+}
+
+fn coordinates(
+    world: &mut World,
+    scene: &Scene,
+    layout: Layout,
+) -> Result<Coordinates, SetupError> {
+    if has_links(scene, scene.run.formulation) {
+        let found = topology::find(world, layout)?;
+        let mechanism = link_tree::build(world, scene, &found)?;
+        let tree = mechanism.tree.clone();
+        world.insert_resource(mechanism);
+        let state = JointVector::new(world, layout.first_order);
+        let solver = LinkStages::new(tree, found.topology.clone(), state.places());
+        return Ok(Coordinates {
+            state: Box::new(state),
+            topology: found.topology,
+            solver: Box::new(solver),
+        });
+    }
+    let topology = if is_linearised(&scene.run.integrator) {
+        topology::find(world, layout)?.topology
+    } else {
+        Topology::default()
+    };
+    Ok(Coordinates {
+        state: Box::new(StateVector::new(world, layout)),
+        solver: Box::new(ShiftedSystem::new(topology.clone())),
+        topology,
+    })
+}
+
+/// A start that cannot be evaluated, rendered.
+fn not_evaluated(world: &World, scene: &Scene, fault: &Fault) -> SceneError {
+    let name = fault.entity.and_then(|entity| owner_name(world, entity));
+    let path = name
+        .as_ref()
+        .map_or_else(String::new, |name| format!("entities.{name}"));
+    let who = name.map_or_else(String::new, |name| format!("`{name}`: "));
+    scene.refuse(SetupError::new(path, format!("{who}{}", fault.message), ""))
 }
 
 fn unordered(text: String) -> SceneError {
@@ -194,6 +263,7 @@ impl Simulation {
         with_integration(&mut self.world, |world, integration| {
             let Integration {
                 evaluation,
+                state,
                 implicit,
                 trajectory,
                 ..
@@ -201,6 +271,7 @@ impl Simulation {
             let mut equations = WorldEquations {
                 world,
                 evaluation,
+                state: &mut **state,
                 implicit,
             };
             (0..count).try_for_each(|_| {

@@ -1,6 +1,5 @@
 //! Why a run stops before its end, in words: the time, the entity, the likely cause.
 
-use aerobot_components::state::StateIndex;
 use aerobot_systems::integration::StepFailure;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
@@ -64,19 +63,14 @@ impl Simulation {
 
     /// The entity to which a place in the state belongs.
     fn name_of_state(&mut self, index: usize) -> Option<String> {
-        let coordinates = with_integration(&mut self.world, |_, integration| {
-            integration.evaluation.state.layout().coordinates
-        })?;
-        if index >= 2 * coordinates {
-            return None;
-        }
-        let place = index % coordinates;
-        let mut states = self.world.query::<(&StateIndex, &EntityName)>();
-        states
-            .iter(&self.world)
-            .filter(|(start, _)| start.0 <= place)
-            .max_by_key(|(start, _)| start.0)
-            .map(|(_, name)| name.0.to_string())
+        with_integration(&mut self.world, |world, integration| {
+            let state = &mut integration.state;
+            if index >= 2 * state.layout().coordinates {
+                return None;
+            }
+            let owner = state.owner(world, index)?;
+            Some(world.get::<EntityName>(owner)?.0.to_string())
+        })?
     }
 }
 

@@ -8,7 +8,7 @@ use bevy_ecs::world::World;
 use crate::builtin::recorder::{Recorder, segment_name};
 use crate::recording::summary::{EventRow, FinalState, LargestTension, Stop, Summary, VERSION};
 use crate::simulation::Simulation;
-use crate::world::{EntityName, EventLog, SceneEntities};
+use crate::world::{EntityName, EventLog, SceneEntities, Warnings};
 
 impl Simulation {
     /// The summary of a run that has ended, or was stopped.
@@ -75,16 +75,18 @@ fn final_states(world: &World) -> Vec<FinalState> {
 }
 
 fn warnings(world: &World) -> Vec<String> {
-    world
-        .resource::<BeyondMorrison>()
-        .0
-        .iter()
-        .filter_map(|entity| world.get::<EntityName>(*entity))
-        .map(|name| {
-            format!(
-                "`{}` has been beyond Re = 1e6, where Morrison's drag coefficient ends; it was held",
-                name.0
-            )
-        })
-        .collect()
+    let mut warnings = world.resource::<Warnings>().0.clone();
+    let beyond = world.resource::<BeyondMorrison>().0.iter();
+    warnings.extend(
+        beyond
+            .filter_map(|entity| world.get::<EntityName>(*entity))
+            .map(|name| {
+                format!(
+                    "`{}` has been beyond Re = 1e6, where Morrison's drag coefficient ends; it was \
+                     held",
+                    name.0
+                )
+            }),
+    );
+    warnings
 }

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use aerobot_components::state::{FirstOrderState, StateIndex};
 use aerobot_components::tether::TetherNode;
 use aerobot_systems::clock::Clock;
-use aerobot_systems::dynamics::state_vector::{
-    BODY_COORDINATES, FirstOrderIndex, Layout, NODE_COORDINATES,
-};
+use aerobot_systems::dynamics::first_order::FirstOrderIndex;
+use aerobot_systems::dynamics::state_space::Layout;
+use aerobot_systems::dynamics::state_vector::{BODY_COORDINATES, NODE_COORDINATES};
 use aerobot_systems::fault::FaultSlot;
 use aerobot_systems::forces::body_drag::BeyondMorrison;
 use bevy_ecs::component::Component;
@@ -145,6 +145,10 @@ impl EventLog {
     }
 }
 
+/// What is worth knowing of a run, as sentences: for its summary and its user.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct Warnings(pub Vec<String>);
+
 /// Builds the world of a scene, with every setup run.
 pub(crate) fn build_world(simulator: &Simulator, scene: &Scene) -> Result<World, SetupError> {
     let mut world = World::new();
@@ -154,6 +158,7 @@ pub(crate) fn build_world(simulator: &Simulator, scene: &Scene) -> Result<World,
     world.init_resource::<Edges>();
     world.init_resource::<Discontinuity>();
     world.init_resource::<EventLog>();
+    world.init_resource::<Warnings>();
     let mut names = SceneEntities::default();
     for (order, entity) in scene.entities.iter().enumerate() {
         let name: Arc<str> = entity.name.as_str().into();

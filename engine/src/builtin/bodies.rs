@@ -17,6 +17,7 @@ use aerobot_systems::forces::weight::weight;
 use bevy_ecs::world::World;
 use glam::{DQuat, DVec3};
 
+use super::tethers::has_links;
 use crate::balloon_sizing::sphere_radii;
 use crate::plugin::{Plugin, Simulator};
 use crate::scene::{Scene, SceneEntity, SetupError};
@@ -49,7 +50,8 @@ pub struct MotionPlugin;
 
 impl Plugin for MotionPlugin {
     fn build(&self, simulator: &mut Simulator) {
-        simulator.add_systems(Phase::Dynamics, || accelerate_bodies);
+        let alone = |scene: &Scene, formulation| !has_links(scene, formulation);
+        simulator.add_systems_in(Phase::Dynamics, alone, || accelerate_bodies);
     }
 }
 

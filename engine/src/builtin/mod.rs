@@ -4,6 +4,7 @@ pub mod aerodynamics;
 pub mod bodies;
 pub mod channels;
 pub mod environment;
+pub mod links;
 pub mod recorder;
 pub mod slack_events;
 pub mod tethers;
@@ -19,6 +20,7 @@ pub(crate) fn register(simulator: &mut Simulator) {
         .add_plugin(&aerodynamics::AerodynamicsPlugin)
         .add_plugin(&tethers::TethersPlugin)
         .add_plugin(&bodies::MotionPlugin)
+        .add_plugin(&links::LinksPlugin)
         .add_plugin(&channels::ChannelsPlugin)
         .add_plugin(&slack_events::SlackEventsPlugin)
         .add_plugin(&recorder::RecorderPlugin)

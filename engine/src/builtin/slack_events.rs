@@ -8,6 +8,7 @@ use bevy_ecs::system::{Local, Query, Res, ResMut};
 
 use aerobot_systems::clock::Clock;
 
+use super::tethers::has_springs;
 use crate::plugin::{Plugin, Simulator};
 use crate::schedule::Phase;
 use crate::world::{EntityName, EventLog};
@@ -17,7 +18,7 @@ pub struct SlackEventsPlugin;
 
 impl Plugin for SlackEventsPlugin {
     fn build(&self, simulator: &mut Simulator) {
-        simulator.add_systems(Phase::Observe, || log_slack);
+        simulator.add_systems_in(Phase::Observe, has_springs, || log_slack);
     }
 }
 

@@ -4,13 +4,14 @@ use aerobot_components::aerodynamics::SphereRadius;
 use aerobot_components::body::{Body, Fixed, Motion, Moving};
 use aerobot_components::derivatives::SegmentDerivatives;
 use aerobot_components::inertia::InertiaShape;
+use aerobot_components::run::{Formulation, LinkMass};
 use aerobot_components::scene_component::FieldReport;
 use aerobot_components::segment::{
-    KelvinVoigt, Segment, SegmentDrag, SegmentGeometry, SegmentLoad, Tension,
+    KelvinVoigt, RigidLink, RodMass, Segment, SegmentDrag, SegmentGeometry, SegmentLoad, Tension,
 };
 use aerobot_components::state::{Acceleration, Air, Force, Mass, Origin, Position, Velocity};
 use aerobot_components::tether::{
-    Attachment, AttachmentPoint, NamedPoint, Tether, TetherEnd, TetherNode, TetherParts,
+    Attachment, AttachmentPoint, Lumping, NamedPoint, Tether, TetherEnd, TetherNode, TetherParts,
     TetherPoint, TetherSide,
 };
 use aerobot_systems::dynamics::attachments::{load_carriers, place_attachments};
@@ -18,7 +19,7 @@ use aerobot_systems::dynamics::point_mass::accelerate_nodes;
 use aerobot_systems::dynamics::rigid_body::CarriedMass;
 use aerobot_systems::dynamics::segments::{PointArrays, load_points, segment_geometry};
 use aerobot_systems::forces::segment_drag::{segment_drag, segment_drag_derivatives};
-use aerobot_systems::forces::spring::{spring, spring_derivatives};
+use aerobot_systems::forces::spring::{rigid_link_derivatives, spring, spring_derivatives};
 use bevy_ecs::entity::Entity;
 use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::world::World;
@@ -42,13 +43,46 @@ impl Plugin for TethersPlugin {
             .add_systems(Phase::Prepare, || {
                 (place_attachments, segment_geometry).chain()
             })
-            .add_systems_for::<Tether, _, _>(Phase::Forces, || spring)
+            .add_systems_in(Phase::Forces, has_springs, || spring)
             .add_systems_if(Phase::Forces, has_drag, || segment_drag)
             .add_systems_for::<Tether, _, _>(Phase::Dynamics, || {
-                (load_points, load_carriers, accelerate_nodes).chain()
+                (load_points, load_carriers).chain()
             })
-            .add_systems_for::<Tether, _, _>(Phase::Derivatives, || spring_derivatives)
+            .add_systems_in(Phase::Dynamics, has_free_nodes, || accelerate_nodes)
+            .add_systems_in(Phase::Derivatives, has_springs, || spring_derivatives)
+            .add_systems_in(Phase::Derivatives, has_rigid_links, || {
+                rigid_link_derivatives
+            })
             .add_systems_if(Phase::Derivatives, has_drag, || segment_drag_derivatives);
+    }
+}
+
+/// Whether tethers move as trees of links.
+pub(crate) fn has_links(scene: &Scene, formulation: Formulation) -> bool {
+    formulation == Formulation::Denoc && scene.with::<Tether>().next().is_some()
+}
+
+/// Whether the links keep their length.
+pub(super) fn has_rigid_links(scene: &Scene, formulation: Formulation) -> bool {
+    has_links(scene, formulation) && !scene.run.elastic_links
+}
+
+/// Whether segments stretch.
+pub(super) fn has_springs(scene: &Scene, formulation: Formulation) -> bool {
+    scene.with::<Tether>().next().is_some() && !has_rigid_links(scene, formulation)
+}
+
+/// Whether nodes move by themselves.
+fn has_free_nodes(scene: &Scene, formulation: Formulation) -> bool {
+    scene.with::<Tether>().next().is_some() && !has_links(scene, formulation)
+}
+
+/// Where the mass of a tether goes: half of a rod counts at each of its ends.
+pub(crate) fn lumping(scene: &Scene, tether: &Tether) -> Lumping {
+    if has_links(scene, scene.run.formulation) && scene.run.links == LinkMass::Rod {
+        Lumping::HalfSegment
+    } else {
+        tether.lumping
     }
 }
 
@@ -189,13 +223,15 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
             .get::<Motion>()
             .map_or(DVec3::ZERO, |motion| motion.velocity_m_s);
         let mut parts = TetherParts::default();
+        let lumping = lumping(scene, tether);
+        let end_mass_kg = tether.end_mass_kg(lumping);
         let ends = [
             (from, tether.from.1, TetherSide::From),
             (to, tether.to.1, TetherSide::To),
         ];
         parts
             .points
-            .push(spawn_attachment(world, id, tether, ends[0], points));
+            .push(spawn_attachment(world, id, end_mass_kg, ends[0], points));
         let order = next_spawn_order(world).0;
         for number in 1..=tether.nodes {
             let place = number as usize;
@@ -209,7 +245,7 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
                             index: points + place,
                         },
                         Free,
-                        Mass(tether.node_mass_kg()),
+                        Mass(tether.node_mass_kg(lumping)),
                         Position::default(),
                         Origin::default(),
                         Velocity(velocity),
@@ -222,11 +258,17 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
         let last = points + tether.nodes as usize + 1;
         parts
             .points
-            .push(spawn_attachment(world, id, tether, ends[1], last));
+            .push(spawn_attachment(world, id, end_mass_kg, ends[1], last));
         for number in 1..=tether.segments() {
-            parts
-                .segments
-                .push(spawn_segment(world, id, tether, number, points));
+            let segment = spawn_segment(world, id, tether, number, points);
+            parts.segments.push(segment);
+            if has_rigid_links(scene, scene.run.formulation) {
+                world.entity_mut(segment).insert(RigidLink);
+            }
+            if has_links(scene, scene.run.formulation) && scene.run.links == LinkMass::Rod {
+                let mass_kg = tether.mass_kg() / f64::from(tether.segments());
+                world.entity_mut(segment).insert(RodMass(mass_kg));
+            }
         }
         points = last + 1;
         world.entity_mut(id).insert(parts);
@@ -238,13 +280,12 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
 fn spawn_attachment(
     world: &mut World,
     tether_id: Entity,
-    tether: &Tether,
+    mass_kg: f64,
     end: (Entity, AttachmentPoint, TetherSide),
     index: usize,
 ) -> Entity {
     let (carrier, point, side) = end;
     let offset_m = offset_m(world, carrier, point);
-    let mass_kg = tether.end_mass_kg();
     if let Some(mut carried) = world.get_mut::<CarriedMass>(carrier) {
         carried.add(mass_kg, offset_m);
     }

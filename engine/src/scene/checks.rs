@@ -1,7 +1,7 @@
 //! Checks that any scene must pass, whatever its components: their own fields, what they exclude and
 //! need, and the checks that plugins add.
 
-use aerobot_components::run::{ChannelSelection, Formulation, InstrumentSelection};
+use aerobot_components::run::{ChannelSelection, InstrumentSelection};
 use aerobot_components::scene_component::FieldReport;
 
 use super::source::nearest;
@@ -32,7 +32,6 @@ pub(super) fn check_scene(
     for entity in &scene.entities {
         check_company(simulator, entity, &mut across);
     }
-    check_formulation(scene, &mut across);
     check_record(scene, &mut across);
     for check in &simulator.checks {
         check(scene, &mut across);
@@ -90,16 +89,6 @@ fn check_company(simulator: &Simulator, entity: &SceneEntity, report: &mut Field
                 "add it to the same entity",
             );
         }
-    }
-}
-
-fn check_formulation(scene: &Scene, report: &mut FieldReport) {
-    if scene.run.formulation == Formulation::Denoc {
-        report.add(
-            "run.formulation",
-            "the formulation `Denoc` is not part of this version",
-            "use `LumpedMass` (`--formulation lumped-mass`)",
-        );
     }
 }
 

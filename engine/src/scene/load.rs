@@ -134,6 +134,9 @@ fn bare_word(source: &Source, root: &Node, path: &FieldPath) -> Option<String> {
 fn placeholder_run() -> RunSpec {
     RunSpec {
         formulation: Default::default(),
+        links: Default::default(),
+        elastic_links: false,
+        base: None,
         duration_s: 1.0,
         output_every_s: 1.0,
         integrator: Default::default(),

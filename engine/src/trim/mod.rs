@@ -157,14 +157,18 @@ impl Simulation {
         with_integration(&mut self.world, |world, integration| {
             let Integration {
                 evaluation,
+                statics,
+                state,
                 trajectory,
                 ..
             } = integration;
-            let systems = placement::settle(world, evaluation, scene)?;
-            evaluation.state.gather(world, &mut trajectory.state);
+            let forces = statics.as_mut().unwrap_or(evaluation);
+            let systems = placement::settle(world, forces, scene)?;
+            state.gather(world, &mut trajectory.state);
             trajectory.switch();
-            evaluation
-                .run(world)
+            state
+                .scatter(world, &trajectory.state)
+                .and_then(|()| evaluation.run(world))
                 .map_err(|fault| not_evaluated(world, &fault))?;
             find_supports(world);
             Ok(report::report(world, &systems))

@@ -40,4 +40,5 @@ pub mod forward_dynamics;
 pub mod inverse_dynamics;
 pub mod joint_coordinates;
 pub mod kinematics;
+pub mod stage_system;
 pub mod tree;

@@ -4,8 +4,13 @@
 pub mod accumulators;
 pub mod anchors;
 pub mod attachments;
+pub mod first_order;
+pub mod joint_vector;
+pub mod link_mechanism;
+pub mod links;
 pub mod point_mass;
 pub mod rigid_body;
 pub mod rotation_chart;
 pub mod segments;
+pub mod state_space;
 pub mod state_vector;

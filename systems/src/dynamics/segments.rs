@@ -29,6 +29,11 @@ impl PointArrays {
             load_n: vec![DVec3::ZERO; count],
         }
     }
+
+    /// Loads by point, N: zero between the systems that use them.
+    pub(super) fn loads_n(&mut self) -> &mut [DVec3] {
+        &mut self.load_n
+    }
 }
 
 /// Finds direction, length, rate, midpoint and mean velocity of every segment, and clears its load.

@@ -1,53 +1,29 @@
-//! The flat state that integrators see, gathered from and scattered to the components.
+//! The state in absolute coordinates, those of the lumped formulation: every node and every body by itself.
 //!
 //! Layout: coordinates, then their velocities in the same order, then first-order states. A node has
 //! three coordinates (displacement from its [`Origin`], m), a free body six (displacement and the
 //! rotation vector of the local chart, rad); the velocities are m/s and rad/s in the body frame.
 
 use aerobot_components::state::{
-    Acceleration, AngularAcceleration, AngularVelocity, Attitude, ChartAttitude, FirstOrderState,
-    Origin, Position, StateIndex, Velocity,
+    Acceleration, AngularAcceleration, AngularVelocity, Attitude, ChartAttitude, Origin, Position,
+    StateIndex, Velocity,
 };
 use aerobot_components::tether::TetherNode;
 use bevy_ecs::change_detection::DetectChangesMut;
-use bevy_ecs::component::Component;
+use bevy_ecs::entity::Entity;
 use bevy_ecs::query::{QueryState, With, Without};
 use bevy_ecs::world::World;
 use glam::DVec3;
 
+use super::first_order::FirstOrderStates;
 use super::rotation_chart::{exponential, rotation_rate};
+use super::state_space::{Layout, StateSpace};
+use crate::fault::Fault;
 
 /// Coordinates that a node of a tether has.
 pub const NODE_COORDINATES: usize = 3;
 /// Coordinates that a free body has.
 pub const BODY_COORDINATES: usize = 6;
-
-/// Sizes of the parts of a state.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Layout {
-    /// Number of coordinates, and of velocities.
-    pub coordinates: usize,
-    /// Number of first-order states.
-    pub first_order: usize,
-}
-
-impl Layout {
-    /// Length of the state.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        2 * self.coordinates + self.first_order
-    }
-
-    /// Whether there is nothing to integrate.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-}
-
-/// Place of a first-order state among its like.
-#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FirstOrderIndex(pub usize);
 
 type Nodes = (
     &'static StateIndex,
@@ -77,7 +53,8 @@ pub struct StateVector {
     node_rates: QueryState<(&'static StateIndex, &'static Acceleration), With<TetherNode>>,
     bodies: QueryState<Bodies, Without<TetherNode>>,
     body_rates: QueryState<BodyRates, Without<TetherNode>>,
-    first_order: QueryState<(&'static FirstOrderIndex, &'static mut FirstOrderState)>,
+    first_order: FirstOrderStates,
+    owners: QueryState<(&'static StateIndex, Entity)>,
 }
 
 impl StateVector {
@@ -89,18 +66,18 @@ impl StateVector {
             node_rates: world.query_filtered(),
             bodies: world.query_filtered(),
             body_rates: world.query_filtered(),
-            first_order: world.query(),
+            first_order: FirstOrderStates::new(world),
+            owners: world.query(),
         }
     }
+}
 
-    /// Sizes of the state.
-    #[must_use]
-    pub fn layout(&self) -> Layout {
+impl StateSpace for StateVector {
+    fn layout(&self) -> Layout {
         self.layout
     }
 
-    /// Reads the state from the components; rotation vectors are zero.
-    pub fn gather(&mut self, world: &mut World, state: &mut [f64]) {
+    fn gather(&mut self, world: &mut World, state: &mut [f64]) {
         let n = self.layout.coordinates;
         state.fill(0.0);
         for (index, origin, position, velocity) in self.nodes.iter(world) {
@@ -112,13 +89,10 @@ impl StateVector {
             velocity.0.write_to_slice(&mut state[n + index.0..]);
             rate.0.write_to_slice(&mut state[n + index.0 + 3..]);
         }
-        for (index, value) in self.first_order.iter(world) {
-            state[2 * n + index.0] = value.value;
-        }
+        self.first_order.gather(world, &mut state[2 * n..]);
     }
 
-    /// Writes a state to the components.
-    pub fn scatter(&mut self, world: &mut World, state: &[f64]) {
+    fn scatter(&mut self, world: &mut World, state: &[f64]) -> Result<(), Fault> {
         let (coordinates, rest) = state.split_at(self.layout.coordinates);
         let (velocities, first_order) = rest.split_at(self.layout.coordinates);
         for (index, origin, mut position, mut velocity) in self.nodes.iter_mut(world) {
@@ -134,13 +108,11 @@ impl StateVector {
             velocity.0 = DVec3::from_slice(&velocities[index.0..]);
             rate.0 = DVec3::from_slice(&velocities[index.0 + 3..]);
         }
-        for (index, mut value) in self.first_order.iter_mut(world) {
-            value.value = first_order[index.0];
-        }
+        self.first_order.scatter(world, first_order);
+        Ok(())
     }
 
-    /// Reads the rates of `state` from the accelerations that the evaluation left.
-    pub fn gather_rates(&mut self, world: &mut World, state: &[f64], rates: &mut [f64]) {
+    fn gather_rates(&mut self, world: &mut World, state: &[f64], rates: &mut [f64]) {
         let n = self.layout.coordinates;
         rates[..n].copy_from_slice(&state[n..2 * n]);
         for (index, acceleration) in self.node_rates.iter(world) {
@@ -153,14 +125,10 @@ impl StateVector {
             linear.0.write_to_slice(&mut rates[n + index.0..]);
             angular.0.write_to_slice(&mut rates[n + index.0 + 3..]);
         }
-        for (index, value) in self.first_order.iter(world) {
-            rates[2 * n + index.0] = value.rate_per_s;
-        }
+        self.first_order.gather_rates(world, &mut rates[2 * n..]);
     }
 
-    /// Takes the accepted attitudes as the new centres of their charts: rotation vectors become
-    /// zero and their rates the angular velocities.
-    pub fn recentre(&mut self, world: &mut World, state: &mut [f64], rates: &mut [f64]) {
+    fn recentre(&mut self, world: &mut World, state: &mut [f64], rates: &mut [f64]) {
         let n = self.layout.coordinates;
         for (index, _, mut chart, _, mut attitude, _, _) in self.bodies.iter_mut(world) {
             let rotation = &mut state[index.0 + 3..index.0 + 6];
@@ -172,13 +140,19 @@ impl StateVector {
         }
     }
 
-    /// The scale of an error in each part of the state that matters as much as 1 m.
-    pub fn error_scales(&mut self, world: &mut World) -> Vec<f64> {
+    fn error_scales(&mut self, world: &mut World) -> Vec<f64> {
         let n = self.layout.coordinates;
         let mut scales = vec![1.0; self.layout.len()];
-        for (index, value) in self.first_order.iter(world) {
-            scales[2 * n + index.0] = value.error_scale;
-        }
+        self.first_order.error_scales(world, &mut scales[2 * n..]);
         scales
+    }
+
+    fn owner(&mut self, world: &mut World, place: usize) -> Option<Entity> {
+        let place = place % self.layout.coordinates.max(1);
+        self.owners
+            .iter(world)
+            .filter(|(start, _)| start.0 <= place)
+            .max_by_key(|(start, _)| start.0)
+            .map(|(_, entity)| entity)
     }
 }

@@ -5,8 +5,9 @@
 //! (paper, sec. 3.1.1; Linskens and Mooij 2016).
 
 use aerobot_components::derivatives::SegmentDerivatives;
-use aerobot_components::segment::{KelvinVoigt, SegmentGeometry, SegmentLoad, Tension};
+use aerobot_components::segment::{KelvinVoigt, RigidLink, SegmentGeometry, SegmentLoad, Tension};
 use bevy_ecs::change_detection::DetectChangesMut;
+use bevy_ecs::query::With;
 use bevy_ecs::system::Query;
 use glam::DMat3;
 
@@ -70,6 +71,18 @@ pub fn spring_derivatives(
             gap_m,
             closing_m_s: geometry.length_rate_m_s,
             drag_n_s_m: DMat3::ZERO,
+        };
+    }
+}
+
+/// Finds the derivatives of rigid links, which are those across them, and clears those of their drag.
+pub fn rigid_link_derivatives(
+    mut links: Query<(&SegmentGeometry, &Tension, &mut SegmentDerivatives), With<RigidLink>>,
+) {
+    for (geometry, tension, mut derivatives) in &mut links {
+        *derivatives.bypass_change_detection() = SegmentDerivatives {
+            geometric_stiffness_n_m: tension.0.max(0.0) / geometry.length_m,
+            ..SegmentDerivatives::default()
         };
     }
 }

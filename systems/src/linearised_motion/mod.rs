@@ -18,5 +18,6 @@ pub mod error_norm;
 pub mod few_bodies;
 pub mod joined_pair;
 pub mod shifted_system;
+pub mod stage_solver;
 pub mod symmetric3;
 pub mod topology;

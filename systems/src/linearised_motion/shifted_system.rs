@@ -7,17 +7,11 @@ use super::chain::Chain;
 use super::derivatives::Derivatives;
 use super::few_bodies::FewBodies;
 use super::joined_pair::JoinedPair;
+use super::stage_solver::{Change, NotSolvable, StageSolver};
 use super::symmetric3::Symmetric3;
 use super::topology::{End, Topology};
 use crate::nonlinear_solver::block_elimination::Elimination;
 use crate::nonlinear_solver::block_sparse::{BlockMatrix, BlockPattern};
-
-/// A matrix that cannot be factorised: the step is too long for what pushes there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct NotSolvable {
-    /// Place in the state.
-    pub index: usize,
-}
 
 /// `along t t' + all I` of a segment in the direction t.
 #[derive(Clone, Copy, Debug, Default)]
@@ -116,61 +110,6 @@ impl ShiftedSystem {
         }
     }
 
-    /// What is joined to what.
-    #[must_use]
-    pub fn topology(&self) -> &Topology {
-        &self.topology
-    }
-
-    /// Factorises the matrix of a step of `step_s` with g = `gamma` x `step_s`.
-    ///
-    /// # Errors
-    /// [`NotSolvable`], with the place in the state.
-    pub fn factorise(
-        &mut self,
-        derivatives: &Derivatives,
-        step_s: f64,
-        gamma: f64,
-    ) -> Result<(), NotSolvable> {
-        let g = gamma * step_s;
-        self.g = g;
-        self.set_blocks(derivatives, step_s);
-        self.set_bodies(derivatives);
-        self.is_pair = self.factorise_pair(derivatives);
-        if self.is_pair {
-            return Ok(());
-        }
-        for (index, line) in self.topology.lines.iter().enumerate() {
-            let left = self.chains[index]
-                .factorise(&self.own[line.node_points()], &self.blocks[line.segments()])
-                .map_err(|at| NotSolvable {
-                    index: line.first_state + 3 * at.node,
-                })?;
-            let [from, to] = &derivatives.ends[index];
-            if let End::OnBody(body) = line.from {
-                let block = BodyBlock::between(&from.place, left.from_from, &from.place);
-                self.diagonal[body].add(&block, 1.0);
-            }
-            if let End::OnBody(body) = line.to {
-                let block = BodyBlock::between(&to.place, left.to_to, &to.place);
-                self.diagonal[body].add(&block, 1.0);
-            }
-            if let (End::OnBody(_), End::OnBody(_)) = (line.from, line.to) {
-                self.beside[index] = BodyBlock::between(&to.place, left.to_from, &from.place);
-            }
-        }
-        self.are_few = self.factorise_few();
-        if self.are_few {
-            return Ok(());
-        }
-        self.set_matrix();
-        self.elimination
-            .factorise(&self.matrix)
-            .map_err(|singular| NotSolvable {
-                index: self.topology.bodies[singular.site].first_state,
-            })
-    }
-
     fn set_blocks(&mut self, derivatives: &Derivatives, step_s: f64) {
         let (g, g2) = (self.g, self.g * self.g);
         let gravity = derivatives.gravity_m_s2;
@@ -256,24 +195,6 @@ impl ShiftedSystem {
                 add_block(&mut self.matrix, b, a, block);
                 add_block(&mut self.matrix, a, b, &block.transposed());
             }
-        }
-    }
-
-    /// Solves for the increments of one stage: `r` holds r_x, r_v and r_s and becomes X, V and S.
-    pub fn solve(&mut self, derivatives: &Derivatives, r: &mut [f64]) {
-        let (r_x, rest) = r.split_at_mut(self.topology.coordinates);
-        let (r_v, r_s) = rest.split_at_mut(self.topology.coordinates);
-        self.load_bodies(derivatives, r_x, r_v);
-        for index in 0..self.topology.lines.len() {
-            self.pull_line(index, derivatives, r_x, r_v);
-        }
-        self.solve_all(derivatives);
-        for index in 0..self.topology.lines.len() {
-            self.take_line(index, r_x, r_v);
-        }
-        self.take_bodies(r_x, r_v);
-        for r in r_s {
-            *r *= self.g;
         }
     }
 
@@ -411,6 +332,82 @@ impl ShiftedSystem {
                 *x = self.g * (*v + *x);
             }
         }
+    }
+}
+
+impl StageSolver for ShiftedSystem {
+    fn factorise(
+        &mut self,
+        derivatives: &Derivatives,
+        step_s: f64,
+        gamma: f64,
+    ) -> Result<(), NotSolvable> {
+        let g = gamma * step_s;
+        self.g = g;
+        self.set_blocks(derivatives, step_s);
+        self.set_bodies(derivatives);
+        self.is_pair = self.factorise_pair(derivatives);
+        if self.is_pair {
+            return Ok(());
+        }
+        for (index, line) in self.topology.lines.iter().enumerate() {
+            let left = self.chains[index]
+                .factorise(&self.own[line.node_points()], &self.blocks[line.segments()])
+                .map_err(|at| NotSolvable {
+                    index: line.first_state + 3 * at.node,
+                })?;
+            let [from, to] = &derivatives.ends[index];
+            if let End::OnBody(body) = line.from {
+                let block = BodyBlock::between(&from.place, left.from_from, &from.place);
+                self.diagonal[body].add(&block, 1.0);
+            }
+            if let End::OnBody(body) = line.to {
+                let block = BodyBlock::between(&to.place, left.to_to, &to.place);
+                self.diagonal[body].add(&block, 1.0);
+            }
+            if let (End::OnBody(_), End::OnBody(_)) = (line.from, line.to) {
+                self.beside[index] = BodyBlock::between(&to.place, left.to_from, &from.place);
+            }
+        }
+        self.are_few = self.factorise_few();
+        if self.are_few {
+            return Ok(());
+        }
+        self.set_matrix();
+        self.elimination
+            .factorise(&self.matrix)
+            .map_err(|singular| NotSolvable {
+                index: self.topology.bodies[singular.site].first_state,
+            })
+    }
+
+    fn solve(&mut self, derivatives: &Derivatives, r: &mut [f64]) {
+        let (r_x, rest) = r.split_at_mut(self.topology.coordinates);
+        let (r_v, r_s) = rest.split_at_mut(self.topology.coordinates);
+        self.load_bodies(derivatives, r_x, r_v);
+        for index in 0..self.topology.lines.len() {
+            self.pull_line(index, derivatives, r_x, r_v);
+        }
+        self.solve_all(derivatives);
+        for index in 0..self.topology.lines.len() {
+            self.take_line(index, r_x, r_v);
+        }
+        self.take_bodies(r_x, r_v);
+        for r in r_s {
+            *r *= self.g;
+        }
+    }
+
+    // The state has the coordinates of the topology itself.
+
+    fn displace(&mut self, _: &Derivatives, _: &[f64], _: Change) {}
+
+    fn displaced<'a>(&'a self, change: &'a [f64], _: Change) -> &'a [f64] {
+        change
+    }
+
+    fn place(&self, coordinate: usize) -> usize {
+        coordinate
     }
 }
 

@@ -1,5 +1,11 @@
 //! What is joined to what: tethers with their nodes, bodies, and who holds which end.
 
+use bevy_ecs::component::Component;
+
+/// Place of a free body among those of the topology.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BodyIndex(pub usize);
+
 /// Where an end of a tether is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {

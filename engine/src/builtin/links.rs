@@ -1,0 +1,196 @@
+//! The second formulation: bodies and tethers as trees of links, and what such a tree cannot be.
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+
+use aerobot_components::body::{Body, Fixed, Moving};
+use aerobot_components::run::Formulation;
+use aerobot_components::scene_component::FieldReport;
+use aerobot_components::segment::{RigidLink, Segment, Tension};
+use aerobot_components::tether::Tether;
+use aerobot_systems::clock::Clock;
+use aerobot_systems::dynamics::links::{accelerate_by_links, add_reactions, solve_links};
+use bevy_ecs::entity::Entity;
+use bevy_ecs::query::With;
+use bevy_ecs::schedule::IntoScheduleConfigs;
+use bevy_ecs::system::{Local, Query, Res, ResMut};
+
+use super::tethers::{has_links, has_rigid_links};
+use crate::plugin::{Plugin, Simulator};
+use crate::scene::checks::meant;
+use crate::scene::{Scene, SceneEntity};
+use crate::schedule::Phase;
+use crate::world::{EntityName, EventLog, Warnings};
+
+/// A tension below this part of the largest one is a push and not round-off.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Equations of motion of trees of links, after everything that loads them.
+pub struct LinksPlugin;
+
+impl Plugin for LinksPlugin {
+    fn build(&self, simulator: &mut Simulator) {
+        simulator
+            .add_check(check_loops)
+            .add_check(check_base)
+            .add_systems_in(Phase::Dynamics, has_links, || {
+                (solve_links, accelerate_by_links, add_reactions).chain()
+            })
+            .add_systems_in(Phase::Observe, has_rigid_links, || log_compression);
+    }
+}
+
+fn is_anchor(entity: &SceneEntity) -> bool {
+    entity.has::<Fixed>() || entity.has::<Moving>()
+}
+
+/// What stands for an end of a tether in the graph: all anchors are one.
+fn corner<'a>(scene: &Scene, name: &'a str) -> &'a str {
+    if scene.entity(name).is_some_and(is_anchor) {
+        ""
+    } else {
+        name
+    }
+}
+
+/// A tree has no loops.
+fn check_loops(scene: &Scene, report: &mut FieldReport) {
+    if scene.run.formulation != Formulation::Denoc {
+        return;
+    }
+    let mut joined: BTreeMap<&str, Vec<(&str, &str)>> = BTreeMap::new();
+    for (entity, tether) in scene.with::<Tether>() {
+        let from = corner(scene, &tether.from.0);
+        let to = corner(scene, &tether.to.0);
+        if let Some(mut names) = path_between(&joined, from, to) {
+            names.push(&entity.name);
+            let what = match names.as_slice() {
+                [one] => format!("the tether `{one}` closes a loop by itself"),
+                _ => format!("the tethers `{}` close a loop", names.join("`, `")),
+            };
+            let through = if names.len() > 1 && passes_anchors(scene, &names) {
+                " through the anchors that hold them"
+            } else {
+                ""
+            };
+            report.add(
+                "run.formulation",
+                format!("`Denoc` moves trees of links, and {what}{through}"),
+                "use `LumpedMass` (`--formulation lumped-mass`), which takes any graph of tethers",
+            );
+            return;
+        }
+        joined.entry(from).or_default().push((to, &entity.name));
+        joined.entry(to).or_default().push((from, &entity.name));
+    }
+}
+
+fn passes_anchors(scene: &Scene, tethers: &[&str]) -> bool {
+    let of = |name: &&str| scene.entity(name)?.get::<Tether>();
+    let ends = tethers.iter().filter_map(of);
+    ends.flat_map(|tether| [&tether.from.0, &tether.to.0])
+        .any(|name| corner(scene, name).is_empty())
+}
+
+/// The tethers by which one corner is reached from another, if it is.
+fn path_between<'a>(
+    joined: &BTreeMap<&'a str, Vec<(&'a str, &'a str)>>,
+    from: &'a str,
+    to: &'a str,
+) -> Option<Vec<&'a str>> {
+    let mut reached: BTreeMap<&str, Option<(&str, &str)>> = BTreeMap::from([(from, None)]);
+    let mut waiting = VecDeque::from([from]);
+    while let Some(here) = waiting.pop_front() {
+        if here == to {
+            let mut path = Vec::new();
+            let mut at = here;
+            while let Some(Some((before, tether))) = reached.get(at).copied() {
+                path.push(tether);
+                at = before;
+            }
+            path.reverse();
+            return Some(path);
+        }
+        for (next, tether) in joined.get(here).into_iter().flatten() {
+            if !reached.contains_key(next) {
+                reached.insert(next, Some((here, tether)));
+                waiting.push_back(next);
+            }
+        }
+    }
+    None
+}
+
+/// The base must be a body that moves, of a system that no anchor holds.
+fn check_base(scene: &Scene, report: &mut FieldReport) {
+    let Some(name) = &scene.run.base else {
+        return;
+    };
+    let Some(entity) = scene.entity(name) else {
+        let bodies = scene.entities.iter().filter(|entity| entity.has::<Body>());
+        let help = meant(name, bodies);
+        report.add("run.base", format!("there is no entity `{name}`"), help);
+        return;
+    };
+    if !entity.complete {
+        return;
+    }
+    if !entity.has::<Body>() || is_anchor(entity) {
+        report.add(
+            "run.base",
+            format!("`{name}` is not a body that moves"),
+            "a tree grows from a free body; from an anchor it grows without being told",
+        );
+        return;
+    }
+    let mut joined: BTreeMap<&str, Vec<(&str, &str)>> = BTreeMap::new();
+    for (tether_entity, tether) in scene.with::<Tether>() {
+        let from = corner(scene, &tether.from.0);
+        let to = corner(scene, &tether.to.0);
+        joined
+            .entry(from)
+            .or_default()
+            .push((to, &tether_entity.name));
+        joined
+            .entry(to)
+            .or_default()
+            .push((from, &tether_entity.name));
+    }
+    if path_between(&joined, name, "").is_some() {
+        report.add(
+            "run.base",
+            format!("an anchor holds the system of `{name}`, and its tree grows from there"),
+            "leave out `base`",
+        );
+    }
+}
+
+/// Logs when a tether first has a link that pushes.
+fn log_compression(
+    clock: Res<Clock>,
+    mut events: ResMut<EventLog>,
+    mut warnings: ResMut<Warnings>,
+    links: Query<(&Segment, &Tension), With<RigidLink>>,
+    names: Query<&EntityName>,
+    mut seen: Local<BTreeSet<Entity>>,
+) {
+    let largest = links
+        .iter()
+        .map(|(_, tension)| tension.0.abs())
+        .fold(0.0, f64::max);
+    let mut pushed: BTreeMap<Entity, u32> = BTreeMap::new();
+    for (segment, tension) in &links {
+        if tension.0 < -ROUND_OFF * largest && !seen.contains(&segment.tether) {
+            let number = pushed.entry(segment.tether).or_insert(segment.number);
+            *number = segment.number.min(*number);
+        }
+    }
+    for (tether, number) in pushed {
+        seen.insert(tether);
+        let name = names.get(tether).map_or("", |name| &name.0);
+        events.add(clock.time_s, "compression", &format!("{name}/{number}"));
+        warnings.0.push(format!(
+            "link {number} of `{name}` pushes at {} s: a rigid link can, a tether goes slack there",
+            clock.time_s
+        ));
+    }
+}

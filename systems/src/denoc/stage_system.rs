@@ -1,0 +1,386 @@
+//! The linear systems of an implicit step in joint coordinates, by the recursion.
+//!
+//! With N the natural orthogonal complement at the accepted state, M the masses, D = dF/dv and K = dF/dx of
+//! points and bodies, a stage with g = gamma h solves for the increments V = N v of their velocities
+//!
+//! ```text
+//! N' (M - g D - g^2 K) N v + g^2 G v = N' (g M N r_v + g^2 K N r_x) - g^2 G r_x      x = g (v + r_x)
+//! ```
+//!
+//! G = diag(T/L) over rigid links: as a link turns, its tension follows it (the second derivative of d in
+//! its chart is -e/L). Terms in velocities are left out, as the integrator allows. The matrix has the form
+//! of a mass matrix, so that [`super::articulated_link`] and [`super::articulated_body`] solve it as they
+//! solve for accelerations; factors are kept for the stages of a step.
+
+use glam::DVec3;
+
+use super::articulated_body::{ArticulatedBody, BodyBias, CENTRE};
+use super::articulated_link::{ArticulatedLink, Carried, LinkBias, Stretch};
+use super::tree::{KinematicTree, Limb};
+use crate::linearised_motion::body_block::{BodyBlock, Place, Twist};
+use crate::linearised_motion::derivatives::Derivatives;
+use crate::linearised_motion::stage_solver::{Change, NotSolvable, StageSolver};
+use crate::linearised_motion::symmetric3::Symmetric3;
+use crate::linearised_motion::topology::{Line, Topology};
+
+/// Where in the state the joint coordinates stand.
+#[derive(Clone, Debug, Default)]
+pub struct JointPlaces {
+    /// Of each body: its displacement, if it is a base, and its rotation, if it has one.
+    pub bodies: Vec<(Option<usize>, Option<usize>)>,
+    /// Of the first link; three for each.
+    pub first_link: usize,
+    /// Number of coordinates.
+    pub coordinates: usize,
+}
+
+/// Factors of the matrix of one step, and scratch for its solutions.
+#[derive(Clone, Debug)]
+pub struct LinkStages {
+    tree: KinematicTree,
+    topology: Topology,
+    places: JointPlaces,
+    g: f64,
+    links: Vec<ArticulatedLink<Symmetric3>>,
+    /// g^2 K of each link, G included.
+    stiffness: Vec<Symmetric3>,
+    bodies: Vec<ArticulatedBody>,
+    /// Of bases: what they would pass on.
+    at_base: Vec<Symmetric3>,
+    blocks: Vec<BodyBlock>,
+    biases: Vec<LinkBias>,
+    body_biases: Vec<BodyBias>,
+    /// Force that a link's stage puts on its distal end, and takes from its proximal one.
+    flows: Vec<DVec3>,
+    /// On joints, by link beyond which they are.
+    loads: Vec<DVec3>,
+    body_loads: Vec<Twist>,
+    motions: Vec<Twist>,
+    speeds: Vec<Twist>,
+    /// Of an error and of a step.
+    displaced: [Vec<f64>; 2],
+}
+
+impl LinkStages {
+    /// For a tree made of a topology.
+    #[must_use]
+    pub fn new(tree: KinematicTree, topology: Topology, places: JointPlaces) -> Self {
+        let (links, bodies) = (tree.links, topology.bodies.len());
+        Self {
+            g: 0.0,
+            links: vec![ArticulatedLink::default(); links],
+            stiffness: vec![Symmetric3::default(); links],
+            bodies: vec![ArticulatedBody::default(); bodies],
+            at_base: vec![Symmetric3::default(); bodies],
+            blocks: vec![BodyBlock::ZERO; bodies],
+            biases: vec![LinkBias::default(); links],
+            body_biases: vec![BodyBias::default(); bodies],
+            flows: vec![DVec3::ZERO; links],
+            loads: vec![DVec3::ZERO; links],
+            body_loads: vec![Twist::default(); bodies],
+            motions: vec![Twist::default(); bodies],
+            speeds: vec![Twist::default(); bodies],
+            displaced: [(); 2].map(|()| vec![0.0; topology.coordinates]),
+            tree,
+            topology,
+            places,
+        }
+    }
+
+    /// Eliminates a limb and the body that it carries.
+    fn factorise_limb(
+        &mut self,
+        index: usize,
+        derivatives: &Derivatives,
+        step_s: f64,
+    ) -> Result<(), NotSolvable> {
+        let (limb, kind) = (&self.tree.limbs[index], &self.tree.kinds[index]);
+        let g = self.g;
+        let (proximal, distal) = places(limb, derivatives);
+        let child = limb.child;
+        let turns = self.topology.bodies[child].turns;
+        let (body, inertia) = ArticulatedBody::new(&self.blocks[child], distal, turns);
+        self.bodies[child] = body;
+        let mut carried = Carried::from(inertia);
+        for k in (0..limb.links.len()).rev() {
+            let segment = &derivatives.segments[limb.segment(k)];
+            let all = g * g * segment.geometric_n_m;
+            let (stiffness, damping) = match kind.stretch {
+                Stretch::Rigid => (Symmetric3::identity(all), 0.0),
+                Stretch::Elastic => {
+                    let taut = segment.will_be_taut(step_s, derivatives.gravity_m_s2);
+                    let taut = f64::from(taut);
+                    let along = taut * g * g * segment.stiffness_n_m - all;
+                    let stiffness = Symmetric3::along(segment.direction, along, all);
+                    (stiffness, taut * g * segment.damping_n_s_m)
+                }
+            };
+            // Drag goes with the mean velocity of the ends: a quarter for each of the four blocks, of
+            // which the diagonal ones have been given a half.
+            let coupling = stiffness
+                .plus(Symmetric3::along(
+                    segment.direction,
+                    damping,
+                    kind.coupling_kg,
+                ))
+                .plus_scaled(segment.drag, -0.25 * g);
+            let direction = limb.sign() * segment.direction;
+            let (link, passed_on, positive) =
+                ArticulatedLink::new(carried, coupling, direction, kind.stretch);
+            let place = limb.links.start + k;
+            if !positive {
+                let index = self.places.first_link + 3 * place;
+                return Err(NotSolvable { index });
+            }
+            self.links[place] = link;
+            self.stiffness[place] = stiffness;
+            carried = passed_on;
+            if k > 0 {
+                let point = &derivatives.points[limb.distal_point(k - 1)];
+                carried = carried.plus(
+                    Symmetric3::identity(point.mass_kg)
+                        .plus_scaled(point.damping, g)
+                        .plus_scaled(point.stiffness, g * g),
+                );
+            }
+        }
+        if let Some(parent) = limb.parent {
+            let block = BodyBlock::between(&proximal, carried.total().into(), &proximal);
+            self.blocks[parent].add(&block, 1.0);
+        }
+        Ok(())
+    }
+
+    /// Carries displacements `r_x` and velocities `r_v` of joints outward to bodies and points: leaves the
+    /// loads of a stage.
+    fn load(&mut self, derivatives: &Derivatives, r_x: &[f64], r_v: &[f64]) {
+        let g = self.g;
+        for &base in &self.tree.bases {
+            self.motions[base] = self.base_twist(base, r_x);
+            self.speeds[base] = self.base_twist(base, r_v);
+        }
+        for (index, limb) in self.tree.limbs.iter().enumerate() {
+            let (proximal, distal) = places(limb, derivatives);
+            let of = |motions: &[Twist]| {
+                limb.parent
+                    .map_or(DVec3::ZERO, |body| proximal.motion(motions[body]))
+            };
+            let (mut shift, mut speed) = (of(&self.motions), of(&self.speeds));
+            let coupling_kg = self.tree.kinds[index].coupling_kg;
+            for (k, link) in limb.links.clone().enumerate() {
+                let at = self.places.first_link + 3 * link;
+                let (x, v) = (DVec3::from_slice(&r_x[at..]), DVec3::from_slice(&r_v[at..]));
+                self.flows[link] = g * coupling_kg * v - self.stiffness[link].times(x);
+                shift += x;
+                speed += v;
+                let point = &derivatives.points[limb.distal_point(k)];
+                self.loads[link] = g * point.mass_kg * speed - g * g * point.stiffness.times(shift);
+            }
+            let rotation = self.places.bodies[limb.child].1;
+            self.motions[limb.child] = hung(shift, &distal, rotation, r_x);
+            self.speeds[limb.child] = hung(speed, &distal, rotation, r_v);
+        }
+        let motions = self.motions.iter().zip(&self.speeds);
+        let bodies = derivatives.bodies.iter().zip(motions);
+        for (load, (body, (shift, speed))) in self.body_loads.iter_mut().zip(bodies) {
+            let push = body.mass.times(*speed);
+            let pull = body.stiffness.times(*shift);
+            *load = Twist {
+                linear: g * push.linear - g * g * pull.linear,
+                angular: g * push.angular - g * g * pull.angular,
+            };
+        }
+    }
+
+    fn base_twist(&self, base: usize, r: &[f64]) -> Twist {
+        let part = |at: Option<usize>| at.map_or(DVec3::ZERO, |at| DVec3::from_slice(&r[at..]));
+        let (displacement, rotation) = self.places.bodies[base];
+        let turns = self.topology.bodies[base].turns;
+        Twist {
+            linear: part(displacement),
+            angular: part(rotation.filter(|_| turns)),
+        }
+    }
+
+    fn sweep_inward(&mut self, derivatives: &Derivatives) {
+        for limb in self.tree.limbs.iter().rev() {
+            let (proximal, _) = places(limb, derivatives);
+            let child = limb.child;
+            let bias = self.bodies[child].inward(negated(self.body_loads[child]), DVec3::ZERO);
+            self.body_biases[child] = bias;
+            let mut force = bias.passed_on;
+            for (k, link) in limb.links.clone().enumerate().rev() {
+                let flow = self.flows[link];
+                let bias = self.links[link].inward(force - flow, 0.0);
+                self.biases[link] = bias;
+                force = bias.passed_on + flow;
+                if k > 0 {
+                    force -= self.loads[link - 1];
+                }
+            }
+            if let Some(parent) = limb.parent {
+                let push = proximal.load(force);
+                self.body_loads[parent].linear -= push.linear;
+                self.body_loads[parent].angular -= push.angular;
+            }
+        }
+    }
+
+    /// Writes V and X of all joints.
+    fn sweep_outward(&mut self, derivatives: &Derivatives, r_x: &mut [f64], r_v: &mut [f64]) {
+        let g = self.g;
+        let mut take = |at: usize, v: DVec3| {
+            let x = g * (v + DVec3::from_slice(&r_x[at..]));
+            v.write_to_slice(&mut r_v[at..]);
+            x.write_to_slice(&mut r_x[at..]);
+        };
+        for &base in &self.tree.bases {
+            let bias = self.bodies[base].inward(negated(self.body_loads[base]), DVec3::ZERO);
+            let motion = self.bodies[base].free(&bias, &self.at_base[base]);
+            self.motions[base] = motion.unwrap_or_default();
+            let (displacement, rotation) = self.places.bodies[base];
+            if let Some(at) = displacement {
+                take(at, self.motions[base].linear);
+            }
+            if let Some(at) = rotation {
+                take(at, self.motions[base].angular);
+            }
+        }
+        for limb in &self.tree.limbs {
+            let (proximal, _) = places(limb, derivatives);
+            let mut at = limb
+                .parent
+                .map_or(DVec3::ZERO, |body| proximal.motion(self.motions[body]));
+            for link in limb.links.clone() {
+                let (distal, _) = self.links[link].outward(&self.biases[link], at);
+                take(self.places.first_link + 3 * link, distal - at);
+                at = distal;
+            }
+            let child = limb.child;
+            self.motions[child] = self.bodies[child].outward(&self.body_biases[child], at);
+            if let Some(place) = self.places.bodies[child].1 {
+                take(place, self.motions[child].angular);
+            }
+        }
+    }
+}
+
+impl StageSolver for LinkStages {
+    fn factorise(
+        &mut self,
+        derivatives: &Derivatives,
+        step_s: f64,
+        gamma: f64,
+    ) -> Result<(), NotSolvable> {
+        let g = gamma * step_s;
+        self.g = g;
+        for (block, body) in self.blocks.iter_mut().zip(&derivatives.bodies) {
+            *block = body.mass;
+            block.add(&body.damping, g);
+            block.add(&body.stiffness, g * g);
+        }
+        for index in (0..self.tree.limbs.len()).rev() {
+            self.factorise_limb(index, derivatives, step_s)?;
+        }
+        for &base in &self.tree.bases {
+            let turns = self.topology.bodies[base].turns;
+            let (body, at_base) = ArticulatedBody::new(&self.blocks[base], CENTRE, turns);
+            self.bodies[base] = body;
+            self.at_base[base] = at_base;
+            if !at_base.inverse().1 {
+                let index = self.places.bodies[base].0.unwrap_or(0);
+                return Err(NotSolvable { index });
+            }
+        }
+        Ok(())
+    }
+
+    fn solve(&mut self, derivatives: &Derivatives, r: &mut [f64]) {
+        let (r_x, rest) = r.split_at_mut(self.places.coordinates);
+        let (r_v, r_s) = rest.split_at_mut(self.places.coordinates);
+        self.load(derivatives, r_x, r_v);
+        self.sweep_inward(derivatives);
+        self.sweep_outward(derivatives, r_x, r_v);
+        for r in r_s {
+            *r *= self.g;
+        }
+    }
+
+    fn displace(&mut self, derivatives: &Derivatives, change: &[f64], of: Change) {
+        for &base in &self.tree.bases {
+            self.motions[base] = self.base_twist(base, change);
+        }
+        let out = &mut self.displaced[of as usize];
+        for limb in &self.tree.limbs {
+            let (proximal, distal) = places(limb, derivatives);
+            let line = &self.topology.lines[limb.line];
+            let mut at = limb
+                .parent
+                .map_or(DVec3::ZERO, |body| proximal.motion(self.motions[body]));
+            for (k, link) in limb.links.clone().enumerate() {
+                at += DVec3::from_slice(&change[self.places.first_link + 3 * link..]);
+                if k + 1 < limb.links.len() {
+                    let node = limb.distal_point(k) - line.first_point - 1;
+                    at.write_to_slice(&mut out[line.first_state + 3 * node..]);
+                }
+            }
+            let rotation = self.places.bodies[limb.child].1;
+            self.motions[limb.child] = hung(at, &distal, rotation, change);
+        }
+        for (site, motion) in self.topology.bodies.iter().zip(&self.motions) {
+            let out = &mut out[site.first_state..site.first_state + 6];
+            motion.linear.write_to_slice(&mut out[..3]);
+            motion.angular.write_to_slice(&mut out[3..]);
+        }
+    }
+
+    fn displaced<'a>(&'a self, _: &'a [f64], of: Change) -> &'a [f64] {
+        &self.displaced[of as usize]
+    }
+
+    fn place(&self, coordinate: usize) -> usize {
+        let nodes = |line: &Line| line.first_state..line.first_state + 3 * line.nodes;
+        for limb in &self.tree.limbs {
+            let line = &self.topology.lines[limb.line];
+            if nodes(line).contains(&coordinate) {
+                return self.places.first_link + 3 * limb.links.start;
+            }
+        }
+        let body = self
+            .topology
+            .bodies
+            .iter()
+            .rposition(|site| site.first_state <= coordinate)
+            .unwrap_or(0);
+        let own = self.places.bodies.get(body).copied().unwrap_or_default();
+        let limb = self.tree.carried_by.get(body).copied().flatten();
+        let link = limb.map(|limb| self.places.first_link + 3 * self.tree.limbs[limb].links.start);
+        own.0.or(own.1).or(link).unwrap_or(0)
+    }
+}
+
+/// Places of a limb's proximal and distal end.
+fn places(limb: &Limb, derivatives: &Derivatives) -> (Place, Place) {
+    let [from, to] = &derivatives.ends[limb.line];
+    if limb.is_from_outward {
+        (from.place, to.place)
+    } else {
+        (to.place, from.place)
+    }
+}
+
+/// How a body moves whose place at the end of a limb moves by `at`, with its rotation read from `r`.
+fn hung(at: DVec3, place: &Place, rotation: Option<usize>, r: &[f64]) -> Twist {
+    let angular = rotation.map_or(DVec3::ZERO, |first| DVec3::from_slice(&r[first..]));
+    Twist {
+        linear: at - place.turn * angular,
+        angular,
+    }
+}
+
+fn negated(load: Twist) -> Twist {
+    Twist {
+        linear: -load.linear,
+        angular: -load.angular,
+    }
+}

@@ -1,0 +1,69 @@
+//! The tree of links of a running world: what the second formulation knows besides the components.
+
+use bevy_ecs::entity::Entity;
+use bevy_ecs::resource::Resource;
+
+use crate::denoc::forward_dynamics::{Accelerations, ForwardDynamics, Loads};
+use crate::denoc::kinematics::{BodyState, LimbOffsets, LinkStates};
+use crate::denoc::tree::KinematicTree;
+
+/// A tree with the entities that stand at its ends.
+#[derive(Clone, Debug, Default)]
+pub struct TreeEntities {
+    /// Of each body.
+    pub bodies: Vec<Entity>,
+    /// The anchor of each limb that has one.
+    pub anchors: Vec<Option<Entity>>,
+    /// The tether of each limb.
+    pub tethers: Vec<Entity>,
+    /// Which bodies turn.
+    pub turns: Vec<bool>,
+    /// Offsets of the ends of each limb.
+    pub offsets: Vec<LimbOffsets>,
+    /// Number of tether points.
+    pub points: usize,
+}
+
+/// The tree, its state at the last evaluation, and what that came to.
+#[derive(Resource, Debug, Default)]
+pub struct LinkMechanism {
+    /// What carries what.
+    pub tree: KinematicTree,
+    /// The entities of its parts.
+    pub entities: TreeEntities,
+    /// Spans and rates of the links.
+    pub links: LinkStates,
+    /// Attitudes and motions of the bodies.
+    pub bodies: Vec<BodyState>,
+    /// What acts.
+    pub loads: Loads,
+    /// What follows.
+    pub accelerations: Accelerations,
+    /// The recursion.
+    pub dynamics: ForwardDynamics,
+    /// Place in the tree of the link of a segment, by the index of the segment's first point.
+    pub link_of_segment: Vec<usize>,
+}
+
+impl LinkMechanism {
+    /// For a tree of these entities.
+    #[must_use]
+    pub fn new(tree: KinematicTree, entities: TreeEntities) -> Self {
+        let mut link_of_segment = vec![usize::MAX; entities.points];
+        for limb in &tree.limbs {
+            for k in 0..limb.links.len() {
+                link_of_segment[limb.segment(k)] = limb.links.start + k;
+            }
+        }
+        Self {
+            links: LinkStates::default(),
+            bodies: vec![BodyState::default(); entities.bodies.len()],
+            loads: Loads::new(&tree, entities.points),
+            accelerations: Accelerations::new(&tree, entities.points),
+            dynamics: ForwardDynamics::new(&tree),
+            link_of_segment,
+            tree,
+            entities,
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Equations of motion of trees of links: forces in, accelerations and tensions out, by
+//! [`crate::denoc::forward_dynamics`].
+//!
+//! Forces act on joints, attachments and bodies as in the lumped formulation. A link's reaction - its tension,
+//! and of a rod what its inertia between the ends adds - is then added to the forces at its ends, so that for
+//! every node and every body, as there, force = mass x acceleration.
+
+use aerobot_components::segment::{RigidLink, Segment, Tension};
+use aerobot_components::state::{
+    Acceleration, AddedInertia, AngularAcceleration, AngularVelocity, Attitude, Force, Inertia,
+    Mass, Torque,
+};
+use aerobot_components::tether::{Attachment, TetherNode, TetherPoint};
+use bevy_ecs::change_detection::DetectChangesMut;
+use bevy_ecs::query::{With, Without};
+use bevy_ecs::system::{Query, Res, ResMut};
+use glam::DVec3;
+
+use super::link_mechanism::LinkMechanism;
+use super::rigid_body::CarriedMass;
+use super::segments::PointArrays;
+use crate::denoc::articulated_link::Stretch;
+use crate::denoc::forward_dynamics::BodyLoad;
+use crate::fault::FaultSlot;
+use crate::linearised_motion::body_block::{BodyBlock, Twist};
+use crate::linearised_motion::topology::BodyIndex;
+
+/// Takes the forces of the evaluation to the tree, and solves for its accelerations and tensions.
+pub fn solve_links(
+    mut mechanism: ResMut<LinkMechanism>,
+    mut faults: ResMut<FaultSlot>,
+    nodes: Query<(&TetherPoint, &Force), With<TetherNode>>,
+    bodies: Query<(
+        &BodyIndex,
+        (&Mass, &AddedInertia, Option<&Inertia>, &CarriedMass),
+        (&Attitude, &AngularVelocity),
+        (&Force, &Torque),
+    )>,
+    anchors: Query<&Acceleration>,
+) {
+    let mechanism = &mut *mechanism;
+    let loads = &mut mechanism.loads;
+    for (point, force) in &nodes {
+        loads.point_n[point.index] = force.0;
+    }
+    for (index, mass, (attitude, rate), (force, torque)) in &bodies {
+        let (own, added, inertia, carried) = mass;
+        let total = own.0 + added.0 + carried.mass_kg;
+        loads.bodies[index.0] = match inertia {
+            None => BodyLoad {
+                mass: BodyBlock {
+                    linear: glam::DMat3::from_diagonal(DVec3::splat(total)),
+                    ..BodyBlock::ZERO
+                },
+                load: Twist {
+                    linear: force.0,
+                    angular: DVec3::ZERO,
+                },
+                turns: false,
+            },
+            Some(inertia) => {
+                let (moment, omega) = (carried.first_moment_kg_m, rate.0);
+                let inertia = inertia.0 + carried.inertia_kg_m2;
+                BodyLoad {
+                    mass: BodyBlock::mass(total, moment, inertia, attitude.0),
+                    load: Twist {
+                        linear: force.0 - attitude.0 * omega.cross(omega.cross(moment)),
+                        angular: attitude.0.conjugate() * torque.0 - omega.cross(inertia * omega),
+                    },
+                    turns: true,
+                }
+            }
+        };
+    }
+    let held = loads.anchor_m_s2.iter_mut();
+    for (acceleration, anchor) in held.zip(&mechanism.entities.anchors) {
+        if let Some(found) = anchor.and_then(|anchor| anchors.get(anchor).ok()) {
+            *acceleration = found.0;
+        }
+    }
+    let solved = mechanism.dynamics.solve(
+        &mechanism.tree,
+        (&mechanism.links, &mechanism.bodies),
+        &mechanism.entities.offsets,
+        &mechanism.loads,
+        &mut mechanism.accelerations,
+    );
+    if let Err(massless) = solved {
+        faults.report(None, || massless.to_string());
+    }
+}
+
+/// Gives nodes and bodies their accelerations.
+pub fn accelerate_by_links(
+    mechanism: Res<LinkMechanism>,
+    mut nodes: Query<(&TetherPoint, &mut Acceleration), With<TetherNode>>,
+    mut bodies: Query<
+        (&BodyIndex, &mut Acceleration, &mut AngularAcceleration),
+        Without<TetherNode>,
+    >,
+) {
+    let found = &mechanism.accelerations;
+    for (point, mut acceleration) in &mut nodes {
+        acceleration.bypass_change_detection().0 = found.point_m_s2[point.index];
+    }
+    for (index, mut linear, mut angular) in &mut bodies {
+        linear.0 = found.bodies[index.0].linear;
+        angular.0 = found.bodies[index.0].angular;
+    }
+}
+
+/// Adds the reactions of links to the forces on nodes, attachments and bodies, and gives rigid links their
+/// tensions.
+pub fn add_reactions(
+    mechanism: Res<LinkMechanism>,
+    mut arrays: ResMut<PointArrays>,
+    mut segments: Query<(&Segment, &mut Tension), With<RigidLink>>,
+    mut points: Query<(&TetherPoint, &mut Force)>,
+    attachments: Query<(&TetherPoint, &Attachment)>,
+    mut carriers: Query<(&Attitude, &mut Force, &mut Torque), Without<TetherPoint>>,
+) {
+    let mechanism = &*mechanism;
+    let (tree, found) = (&mechanism.tree, &mechanism.accelerations);
+    let loads = arrays.loads_n();
+    for (limb, kind) in tree.limbs.iter().zip(&tree.kinds) {
+        let per_length = 1.0 / kind.length_m;
+        let mut before = limb.proximal_point();
+        for (k, link) in limb.links.clone().enumerate() {
+            let mut pull = kind.coupling_kg * found.span_m_s2[link];
+            if kind.stretch == Stretch::Rigid {
+                pull += (found.tension_n[link] * per_length) * mechanism.links.span_m[link];
+            }
+            let distal = limb.distal_point(k);
+            loads[before] += pull;
+            loads[distal] -= pull;
+            before = distal;
+        }
+    }
+    for (segment, mut tension) in &mut segments {
+        let link = mechanism.link_of_segment[segment.from_point];
+        tension.bypass_change_detection().0 = found.tension_n[link];
+    }
+    for (point, attachment) in &attachments {
+        let pull = loads[point.index];
+        if let Ok((attitude, mut force, mut torque)) = carriers.get_mut(attachment.carrier) {
+            force.0 += pull;
+            torque.0 += (attitude.0 * attachment.offset_m).cross(pull);
+        }
+    }
+    for (point, mut force) in &mut points {
+        // Taken, so that the next evaluation finds zeros.
+        force.bypass_change_detection().0 += std::mem::take(&mut loads[point.index]);
+    }
+}
