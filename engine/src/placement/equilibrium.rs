@@ -15,7 +15,7 @@ use bevy_ecs::world::World;
 use glam::DVec3;
 
 use super::sites::{Site, sites, sites_here};
-use super::{Unplaced, floating};
+use super::{Unplaced, floating, rigid_lengths};
 use crate::evaluation::Evaluation;
 use crate::scene::{Scene, SetupError};
 use crate::stopping::owner_name;
@@ -125,8 +125,19 @@ pub(super) fn solve(
     ))
 }
 
-/// Brings everything in `unplaced` to equilibrium where what floats is held in its place.
+/// Brings everything in `unplaced` to equilibrium where what floats is held in its place; rigid links
+/// with the lengths that they keep.
 pub(super) fn solve_shape(
+    world: &mut World,
+    evaluation: &mut Evaluation,
+    unplaced: &Unplaced,
+) -> Result<(), SetupError> {
+    solve_springs(world, evaluation, unplaced)?;
+    rigid_lengths::impose(world, |world| solve_springs(world, evaluation, unplaced))
+}
+
+/// The same with the lengths at rest that springs have now.
+fn solve_springs(
     world: &mut World,
     evaluation: &mut Evaluation,
     unplaced: &Unplaced,

@@ -13,6 +13,7 @@ mod equilibrium;
 mod floating;
 mod guess;
 mod nodes;
+mod rigid_lengths;
 mod sites;
 mod snapshot;
 mod stability;
