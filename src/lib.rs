@@ -19,6 +19,7 @@
 //! ```
 
 pub mod cli;
+pub mod comparison;
 pub mod reproduce;
 
 pub use aerobot_components as components;

@@ -11,59 +11,18 @@
     reason = "a test stops at what it does not expect"
 )]
 
+mod program;
+
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::path::Path;
+use std::process::Output;
 
 use aerobot::engine::plugin::Simulator;
-
-/// Runs the program in the root of the repository, so that the names of files in messages stay.
-fn aerobot(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_aerobot"))
-        .args(arguments)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .unwrap()
-}
+use program::{Scratch, aerobot, text};
 
 fn stderr(output: &Output) -> String {
-    let text = String::from_utf8(output.stderr.clone()).unwrap();
-    assert!(!text.contains("panicked"), "{text}");
-    text
-}
-
-/// A path in the folder for temporary files that is removed at the end; nothing is there yet.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new() -> Self {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        let number = COUNT.fetch_add(1, Ordering::Relaxed);
-        let name = format!("aerobot-bad-input-{}-{number}", std::process::id());
-        let path = std::env::temp_dir().join(name);
-        assert!(!path.exists(), "{} exists", path.display());
-        Self(path)
-    }
-
-    fn text(&self) -> &str {
-        self.0.to_str().unwrap()
-    }
-
-    /// Puts a file into the folder and gives its path.
-    fn file(&self, name: &str, text: &str) -> String {
-        fs::create_dir_all(&self.0).unwrap();
-        let path = self.0.join(name);
-        fs::write(&path, text).unwrap();
-        path.to_str().unwrap().to_owned()
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
+    text(&output.stderr)
 }
 
 /// Every file of a folder with its contents.

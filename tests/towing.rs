@@ -9,11 +9,11 @@
 )]
 
 mod flight;
+mod program;
 
 use std::f64::consts::PI;
 use std::fs;
 use std::path::PathBuf;
-use std::process::{Command, Output};
 
 use aerobot::components::state::Position;
 use aerobot::engine::plugin::Simulator;
@@ -23,6 +23,7 @@ use aerobot::reproduce::towing::{TowingSettings, WindResult, compare};
 use aerobot::systems::towed_cable::{Conditions, Line, StaticShape, TowedBody, TowedCable};
 use flight::{assert_below, owned, scene_file};
 use glam::DVec3;
+use program::{Scratch, aerobot, text};
 
 /// Where the probe of the scene rests, m, with overrides.
 fn discrete(overrides: &[String]) -> DVec3 {
@@ -228,40 +229,10 @@ fn one_node_is_too_few_to_tell_an_order() {
     assert!(matches!(refused, ReproduceError::Setting(_)), "{refused}");
 }
 
-fn aerobot(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_aerobot"))
-        .args(arguments)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
-}
-
-/// A folder that is gone after the test.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new(name: &str) -> Self {
-        let name = format!("aerobot-towing-{name}-{}", std::process::id());
-        let folder = std::env::temp_dir().join(name);
-        let _ = fs::remove_dir_all(&folder);
-        Self(folder)
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 #[test]
 fn the_command_writes_its_tables_once() {
-    let scratch = Scratch::new("tables");
-    let out = scratch.0.to_str().unwrap();
+    let scratch = Scratch::new();
+    let out = scratch.text();
     let short = ["reproduce", "towing", "--nodes", "4", "--until", "10"];
     let first = aerobot(&[&short[..], &["--out", out]].concat());
     assert_eq!(first.status.code(), Some(0), "{}", text(&first.stderr));
@@ -292,8 +263,8 @@ fn the_command_writes_its_tables_once() {
 
 #[test]
 fn what_cannot_be_reproduced_is_refused_and_nothing_is_written() {
-    let scratch = Scratch::new("refused");
-    let out = scratch.0.to_str().unwrap();
+    let scratch = Scratch::new();
+    let out = scratch.text();
     for (arguments, message) in [
         (&["towin"][..], "did you mean `towing`?"),
         (&["towing", "--nodes", "1"], "2 nodes or more"),

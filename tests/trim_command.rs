@@ -10,62 +10,21 @@
     reason = "a test fails by panicking"
 )]
 
+mod program;
+
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::path::Path;
 
 use aerobot::components::state::{Acceleration, AngularAcceleration};
 use aerobot::engine::plugin::Simulator;
 use aerobot::engine::simulation::Simulation;
+use program::{Scratch, aerobot};
 
-/// Runs the program in the root of the repository.
-fn aerobot(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_aerobot"))
-        .args(arguments)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .unwrap()
-}
-
+/// What the program has printed, which is never NaN here.
 fn text(bytes: &[u8]) -> String {
-    let text = String::from_utf8(bytes.to_vec()).unwrap();
-    assert!(
-        !text.contains("panicked") && !text.contains("NaN"),
-        "{text}"
-    );
+    let text = program::text(bytes);
+    assert!(!text.contains("NaN"), "{text}");
     text
-}
-
-/// A folder that is removed at the end.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new() -> Self {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        let number = COUNT.fetch_add(1, Ordering::Relaxed);
-        let name = format!("aerobot-trim-{}-{number}", std::process::id());
-        let path = std::env::temp_dir().join(name);
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn path(&self, name: &str) -> String {
-        self.0.join(name).to_str().unwrap().to_owned()
-    }
-
-    fn file(&self, name: &str, text: &str) -> String {
-        let path = self.0.join(name);
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(&path, text).unwrap();
-        path.to_str().unwrap().to_owned()
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
 }
 
 fn build(file: &str) -> Simulation {
@@ -99,7 +58,7 @@ const IN_SHEAR: &str = "environment.wind=[VenusZonal, Shear(altitude_m: 55_000, 
 /// trimmed already stays where it is.
 #[test]
 fn the_written_scene_starts_in_its_steady_state() {
-    let scratch = Scratch::new();
+    let scratch = Scratch::folder();
     let (once, twice) = (scratch.path("once.ron"), scratch.path("twice.ron"));
     let scene = "scenes/paper/comparison_900m.ron";
     let first = aerobot(&["trim", scene, "--set", IN_SHEAR, "--out", &once]);
@@ -145,7 +104,7 @@ fn the_written_scene_starts_in_its_steady_state() {
 /// The radius of a balloon sized by its altitude is that of before, though it has a pose now.
 #[test]
 fn a_balloon_sized_by_its_altitude_keeps_its_radius() {
-    let scratch = Scratch::new();
+    let scratch = Scratch::folder();
     let out = scratch.path("heave.ron");
     let trim = aerobot(&["trim", "scenes/examples/balloon_heave.ron", "--out", &out]);
     assert_eq!(trim.status.code(), Some(0), "{}", text(&trim.stderr));
@@ -169,7 +128,7 @@ fn a_balloon_sized_by_its_altitude_keeps_its_radius() {
 /// A motion of the scene's own gives way to the steady one.
 #[test]
 fn what_moved_is_written_at_rest() {
-    let scratch = Scratch::new();
+    let scratch = Scratch::folder();
     let scene = scratch.file(
         "pendulum.ron",
         &fs::read_to_string("scenes/examples/elastic_pendulum.ron")
@@ -189,7 +148,7 @@ fn what_moved_is_written_at_rest() {
 /// A table beside the scene is found from another folder too.
 #[test]
 fn tables_are_found_from_the_new_place() {
-    let scratch = Scratch::new();
+    let scratch = Scratch::folder();
     let wind = "altitude_m,zonal_m_s\n0,0\n50000,60\n60000,80\n";
     scratch.file("tables/wind.csv", wind);
     scratch.file("trimmed/other.txt", "");
@@ -217,7 +176,7 @@ fn tables_are_found_from_the_new_place() {
 
 #[test]
 fn a_file_that_exists_is_left_as_it_is() {
-    let scratch = Scratch::new();
+    let scratch = Scratch::folder();
     let out = scratch.file("kept.ron", "the work of a week\n");
     let scene = "scenes/examples/hanging_cable.ron";
     let refused = aerobot(&["trim", scene, "--out", &out]);
@@ -258,7 +217,7 @@ fn what_has_no_steady_state_is_refused_with_its_reason_and_nothing_is_written() 
         count += 1;
         let name = path.file_stem().unwrap().to_str().unwrap();
         let scene = format!("tests/bad_scenes/trimming/{name}.ron");
-        let scratch = Scratch::new();
+        let scratch = Scratch::folder();
         let check = aerobot(&["check", &scene]);
         assert_eq!(check.status.code(), Some(0), "{}", text(&check.stderr));
         let trim = aerobot(&["trim", &scene, "--out", &scratch.path("out.ron")]);

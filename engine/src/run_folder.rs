@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use crate::plugin::Simulator;
 use crate::recording::csv_sink::CsvSink;
+use crate::recording::frame::{Frame, NullSink, ResultSink};
 use crate::recording::summary::{Summary, Timing};
 use crate::scene::source::{apply, parse_override};
 use crate::scene::{Scene, SceneError};
@@ -78,6 +79,19 @@ pub struct FinishedRun {
     pub timing: Timing,
 }
 
+impl Destination {
+    /// Makes sure that nothing is written over that was not to be.
+    ///
+    /// # Errors
+    /// The folder exists, and is not to be written into.
+    pub fn check(&self) -> Result<(), RunError> {
+        if self.folder.exists() && !self.overwrite {
+            return Err(RunError::Exists(self.folder.clone()));
+        }
+        Ok(())
+    }
+}
+
 /// Runs a scene into a folder; `progress` hears of every accepted step's time in s.
 ///
 /// # Errors
@@ -89,56 +103,101 @@ pub fn run_into(
     destination: &Destination,
     progress: &mut dyn FnMut(f64),
 ) -> Result<FinishedRun, RunError> {
-    let folder = &destination.folder;
-    if folder.exists() && !destination.overwrite {
-        return Err(RunError::Exists(folder.clone()));
-    }
+    destination.check()?;
     let simulation = simulator.build(scene).map_err(RunError::Scene)?;
-    let as_run = scene_as_run(scene).map_err(RunError::Scene)?;
-    let is_new = !folder.exists();
-    let prepared = prepare_folder(folder, &as_run).and_then(|()| {
-        CsvSink::create(folder).map_err(|error| RunError::Io(folder.clone(), error))
-    });
-    match prepared {
-        Ok(sink) => Ok(record(simulation, sink, folder, progress)),
-        Err(error) => {
-            // Refused means that nothing was written.
-            if is_new {
-                let _ = fs::remove_dir_all(folder);
+    let prepared = PreparedRun::new(simulation, scene, destination)?;
+    Ok(prepared.run(&mut NullSink, progress))
+}
+
+/// A simulation whose folder is there: the scene as run stands in it, and the tables are open.
+///
+/// For programs that prepare several runs before they begin the first; others call [`run_into`].
+pub struct PreparedRun {
+    simulation: Simulation,
+    sink: CsvSink,
+    folder: PathBuf,
+}
+
+impl PreparedRun {
+    /// Prepares the folder for a simulation that was built from `scene`.
+    ///
+    /// # Errors
+    /// What the file system refused, or that the folder exists; then nothing was written.
+    pub fn new(
+        simulation: Simulation,
+        scene: &Scene,
+        destination: &Destination,
+    ) -> Result<Self, RunError> {
+        destination.check()?;
+        let folder = &destination.folder;
+        let as_run = scene_as_run(scene).map_err(RunError::Scene)?;
+        let is_new = !folder.exists();
+        let prepared = prepare_folder(folder, &as_run).and_then(|()| {
+            CsvSink::create(folder).map_err(|error| RunError::Io(folder.clone(), error))
+        });
+        match prepared {
+            Ok(sink) => Ok(Self {
+                simulation,
+                sink,
+                folder: folder.clone(),
+            }),
+            Err(error) => {
+                // Refused means that nothing was written.
+                if is_new {
+                    let _ = fs::remove_dir_all(folder);
+                }
+                Err(error)
             }
-            Err(error)
         }
+    }
+
+    /// Runs it. `observer` takes every frame after it has been written; `progress` hears of every
+    /// accepted step's time in s.
+    pub fn run(
+        mut self,
+        observer: &mut dyn ResultSink,
+        progress: &mut dyn FnMut(f64),
+    ) -> FinishedRun {
+        let (wall, cpu) = (Instant::now(), thread_cpu_time());
+        let mut sink = ObservedSink {
+            sink: &mut self.sink,
+            observer,
+        };
+        let mut summary = self.simulation.run(&mut sink, progress);
+        let flushed = self.sink.flush();
+        if let (Err(error), None) = (&flushed, &summary.stopped) {
+            summary.stop(format!("the results cannot be written: {error}"));
+        }
+        let cpu_s = (thread_cpu_time() - cpu).as_secs_f64();
+        let timing = Timing {
+            wall_s: wall.elapsed().as_secs_f64(),
+            cpu_s,
+            simulated_s_per_cpu_s: if cpu_s > 0.0 {
+                summary.simulated_s / cpu_s
+            } else {
+                0.0
+            },
+        };
+        let written = write_json(&self.folder.join("summary.json"), &summary)
+            .and_then(|()| write_json(&self.folder.join("timing.json"), &timing));
+        if let (Err(error), None) = (&written, &summary.stopped) {
+            summary.stop(format!("the summary cannot be written: {error}"));
+        }
+        FinishedRun { summary, timing }
     }
 }
 
-fn record(
-    mut simulation: Simulation,
-    mut sink: CsvSink,
-    folder: &Path,
-    progress: &mut dyn FnMut(f64),
-) -> FinishedRun {
-    let (wall, cpu) = (Instant::now(), thread_cpu_time());
-    let mut summary = simulation.run(&mut sink, progress);
-    let flushed = sink.flush();
-    if let (Err(error), None) = (&flushed, &summary.stopped) {
-        summary.stop(format!("the results cannot be written: {error}"));
+/// Writes frames, and shows them to an observer.
+struct ObservedSink<'a> {
+    sink: &'a mut CsvSink,
+    observer: &'a mut dyn ResultSink,
+}
+
+impl ResultSink for ObservedSink<'_> {
+    fn take(&mut self, frame: &Frame) -> io::Result<()> {
+        self.sink.take(frame)?;
+        self.observer.take(frame)
     }
-    let cpu_s = (thread_cpu_time() - cpu).as_secs_f64();
-    let timing = Timing {
-        wall_s: wall.elapsed().as_secs_f64(),
-        cpu_s,
-        simulated_s_per_cpu_s: if cpu_s > 0.0 {
-            summary.simulated_s / cpu_s
-        } else {
-            0.0
-        },
-    };
-    let written = write_json(&folder.join("summary.json"), &summary)
-        .and_then(|()| write_json(&folder.join("timing.json"), &timing));
-    if let (Err(error), None) = (&written, &summary.stopped) {
-        summary.stop(format!("the summary cannot be written: {error}"));
-    }
-    FinishedRun { summary, timing }
 }
 
 /// CPU time of the calling thread.

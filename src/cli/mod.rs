@@ -3,6 +3,9 @@
 //! Exit codes: 0 done, 2 refused (nothing written), 3 stopped (what was recorded is kept).
 
 mod check;
+mod compare;
+mod comparison_text;
+mod progress;
 mod reproduce;
 mod run;
 mod trim;
@@ -33,6 +36,8 @@ enum Command {
     Run(RunArguments),
     /// Check scenes and print what they contain, without running them.
     Check(CheckArguments),
+    /// Run a scene in both formulations and print how far apart they are and what each costs.
+    Compare(CompareArguments),
     /// Compute cases of the paper anew and set them beside what it shows.
     Reproduce(ReproduceArguments),
     /// Find the steady state of a scene in its wind, and write a scene that starts there.
@@ -42,12 +47,19 @@ enum Command {
 /// What every command that reads a scene takes.
 #[derive(Args)]
 struct SceneArguments {
-    /// Override a field of the scene: `--set entities.tether.Tether.nodes=20`; the value is RON.
-    #[arg(long = "set", value_name = "PATH=RON")]
-    set: Vec<String>,
+    #[command(flatten)]
+    changes: ChangeArguments,
     /// Formulation of the tethers' dynamics.
     #[arg(long, value_enum)]
     formulation: Option<FormulationName>,
+}
+
+/// Changes of a scene, whatever its formulation.
+#[derive(Args)]
+struct ChangeArguments {
+    /// Override a field of the scene: `--set entities.tether.Tether.nodes=20`; the value is RON.
+    #[arg(long = "set", value_name = "PATH=RON")]
+    set: Vec<String>,
     /// Seed of the random draws.
     #[arg(long, allow_negative_numbers = true)]
     seed: Option<u64>,
@@ -88,6 +100,23 @@ struct CheckArguments {
     scenes: Vec<PathBuf>,
     #[command(flatten)]
     overrides: SceneArguments,
+}
+
+#[derive(Args)]
+struct CompareArguments {
+    /// The scene, a RON file.
+    scene: PathBuf,
+    #[command(flatten)]
+    changes: ChangeArguments,
+    /// Folder for the results; `runs/<name of the scene>-comparison` unless given.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Write into a folder that exists.
+    #[arg(long)]
+    force: bool,
+    /// Print nothing but errors and warnings.
+    #[arg(long)]
+    quiet: bool,
 }
 
 #[derive(Args)]
@@ -134,7 +163,7 @@ struct TrimArguments {
 impl SceneArguments {
     /// All overrides as `PATH=RON`, those of `--set` first.
     fn as_overrides(&self) -> Vec<String> {
-        let mut overrides = self.set.clone();
+        let mut overrides = self.changes.as_overrides();
         if let Some(formulation) = self.formulation {
             let name = match formulation {
                 FormulationName::LumpedMass => "LumpedMass",
@@ -142,6 +171,14 @@ impl SceneArguments {
             };
             overrides.push(format!("run.formulation={name}"));
         }
+        overrides
+    }
+}
+
+impl ChangeArguments {
+    /// All overrides as `PATH=RON`, those of `--set` first.
+    fn as_overrides(&self) -> Vec<String> {
+        let mut overrides = self.set.clone();
         overrides.extend(self.seed.map(|seed| format!("run.seed={seed}")));
         overrides.extend(self.until.map(|until| format!("run.duration_s={until:?}")));
         overrides
@@ -169,6 +206,7 @@ pub fn main(plugins: &[&dyn Plugin]) -> ExitCode {
     match arguments.command {
         Command::Run(arguments) => run::run(&simulator, &arguments),
         Command::Check(arguments) => check::check(&simulator, &arguments),
+        Command::Compare(arguments) => compare::compare(&simulator, &arguments),
         Command::Reproduce(arguments) => reproduce::reproduce(&simulator, &arguments),
         Command::Trim(arguments) => trim::trim(&simulator, &arguments),
     }

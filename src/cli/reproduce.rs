@@ -1,15 +1,14 @@
 //! `aerobot reproduce`.
 
 use std::fs;
-use std::io::IsTerminal;
 use std::path::Path;
 use std::process::ExitCode;
 
 use aerobot_engine::plugin::Simulator;
 use aerobot_engine::run_folder::RunError;
 use aerobot_engine::scene::source::nearest;
-use indicatif::{ProgressBar, ProgressStyle};
 
+use super::progress::PartBar;
 use super::{REFUSED, ReproduceArguments, STOPPED, complain, say};
 use crate::reproduce::{Case, Settings, cases};
 
@@ -97,12 +96,9 @@ fn run(
     folder: &Path,
     quiet: bool,
 ) -> Result<bool, String> {
-    let bar = progress_bar(quiet);
-    let report = case.run(simulator, settings, &mut |what, part| {
-        bar.set_message(what.to_owned());
-        bar.set_position((part * BAR_LENGTH) as u64);
-    });
-    bar.finish_and_clear();
+    let bar = PartBar::new(quiet);
+    let report = case.run(simulator, settings, &mut |what, part| bar.show(what, part));
+    bar.clear();
     let report = report.map_err(|error| error.to_string())?;
     report
         .write(folder)
@@ -121,19 +117,4 @@ fn run(
         complain(format_args!("error: {stopped}"));
     }
     Ok(report.stopped.is_empty())
-}
-
-/// Steps of the bar.
-const BAR_LENGTH: f64 = 1e4;
-
-/// A bar of the part that is done on a terminal, nothing elsewhere.
-fn progress_bar(quiet: bool) -> ProgressBar {
-    if quiet || !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(BAR_LENGTH as u64);
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %, {msg}, {eta} left") {
-        bar.set_style(style);
-    }
-    bar
 }

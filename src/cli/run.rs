@@ -53,14 +53,7 @@ pub(super) fn run(simulator: &Simulator, arguments: &RunArguments) -> ExitCode {
     match &finished.summary.stopped {
         None => ExitCode::SUCCESS,
         Some(stop) => {
-            let who = stop
-                .entity
-                .as_ref()
-                .map_or_else(String::new, |name| format!(" `{name}`:"));
-            complain(format_args!(
-                "error: stopped at {} s:{who} {}",
-                stop.time_s, stop.reason
-            ));
+            complain(format_args!("error: {stop}"));
             complain(format_args!(
                 "  = note: what was recorded is in `{}`",
                 destination.folder.display()

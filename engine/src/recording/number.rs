@@ -16,6 +16,15 @@ pub fn write_number(out: &mut impl Write, value: f64) -> io::Result<()> {
     }
 }
 
+/// A number as [`write_number`] writes it.
+#[must_use]
+pub fn number_text(value: f64) -> String {
+    let mut out = Vec::new();
+    // A vector takes everything.
+    let _ = write_number(&mut out, value);
+    String::from_utf8(out).unwrap_or_default()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -30,9 +39,7 @@ mod tests {
             (-1e300, "-1e300"),
             (5e-324, "5e-324"),
         ] {
-            let mut out = Vec::new();
-            write_number(&mut out, value).unwrap();
-            let written = String::from_utf8(out).unwrap();
+            let written = number_text(value);
             assert_eq!(written, text);
             assert_eq!(written.parse::<f64>().unwrap(), value);
         }

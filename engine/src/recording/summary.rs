@@ -1,6 +1,8 @@
 //! `summary.json`: what was run and how it ended. `timing.json`: what it took, apart, because every
 //! other file has the same bytes for the same scene, seed and version.
 
+use std::fmt;
+
 use serde::Serialize;
 
 use crate::world::Event;
@@ -72,6 +74,16 @@ pub struct Stop {
     pub entity: Option<String>,
     /// What happened and the likely cause.
     pub reason: String,
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "stopped at {} s:", self.time_s)?;
+        if let Some(entity) = &self.entity {
+            write!(formatter, " `{entity}`:")?;
+        }
+        write!(formatter, " {}", self.reason)
+    }
 }
 
 /// The largest tension of a run.

@@ -1,6 +1,6 @@
 //! The towing case as a text and as tables.
 
-use aerobot_engine::recording::number::write_number;
+use aerobot_engine::recording::number::number_text;
 
 use super::super::{Report, Table};
 use super::{LineShape, TowingSettings, WindResult};
@@ -136,14 +136,6 @@ fn convergence(settings: &TowingSettings, results: &[WindResult]) -> String {
     text
 }
 
-/// A number as every table writes it.
-fn number(value: f64) -> String {
-    let mut out = Vec::new();
-    // A vector takes everything.
-    let _ = write_number(&mut out, value);
-    String::from_utf8(out).unwrap_or_default()
-}
-
 fn row(text: &mut String, fields: &[String]) {
     text.push_str(&fields.join(","));
     text.push('\n');
@@ -152,7 +144,7 @@ fn row(text: &mut String, fields: &[String]) {
 fn wide(settings: &TowingSettings, results: &[WindResult]) -> String {
     let mut text = WIDE_HEADER.to_owned();
     for result in results {
-        let mut fields = vec![number(result.wind_m_s), settings.nodes.to_string()];
+        let mut fields = vec![number_text(result.wind_m_s), settings.nodes.to_string()];
         for (_, line) in models(result) {
             fields.extend(
                 [
@@ -161,10 +153,10 @@ fn wide(settings: &TowingSettings, results: &[WindResult]) -> String {
                     line.top_angle_rad,
                     line.top_tension_n,
                 ]
-                .map(number),
+                .map(number_text),
             );
         }
-        fields.push(number(result.error_m()));
+        fields.push(number_text(result.error_m()));
         fields.push(result.half_nodes.to_string());
         fields.extend(
             [
@@ -173,7 +165,7 @@ fn wide(settings: &TowingSettings, results: &[WindResult]) -> String {
                 result.flown_s,
                 result.unsettled_m(),
             ]
-            .map(number),
+            .map(number_text),
         );
         row(&mut text, &fields);
     }
@@ -186,12 +178,12 @@ fn shapes(results: &[WindResult]) -> String {
         for (model, line) in models(result) {
             for (index, point) in line.points.iter().enumerate() {
                 let fields = [
-                    number(result.wind_m_s),
+                    number_text(result.wind_m_s),
                     model.to_owned(),
                     index.to_string(),
-                    number(point.from_top_m),
-                    number(point.x_m),
-                    number(point.z_m),
+                    number_text(point.from_top_m),
+                    number_text(point.x_m),
+                    number_text(point.z_m),
                 ];
                 row(&mut text, &fields);
             }
@@ -212,10 +204,10 @@ fn tensions(results: &[WindResult]) -> String {
             let segments = middles.zip(line.segment_tensions_n.iter().copied());
             for (from_top_m, tension_n) in [(0.0, line.top_tension_n)].into_iter().chain(segments) {
                 let fields = [
-                    number(result.wind_m_s),
+                    number_text(result.wind_m_s),
                     model.to_owned(),
-                    number(from_top_m),
-                    number(tension_n),
+                    number_text(from_top_m),
+                    number_text(tension_n),
                 ];
                 row(&mut text, &fields);
             }

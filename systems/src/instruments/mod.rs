@@ -6,4 +6,5 @@ pub mod attitude;
 pub mod channel_log;
 pub mod energy;
 pub mod energy_guard;
+pub mod energy_sum;
 pub mod swing;
