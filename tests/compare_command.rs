@@ -42,7 +42,6 @@ fn wrong_arguments_are_refused_and_nothing_is_written() {
 }
 
 #[test]
-#[ignore = "until the second formulation is there"]
 fn the_command_prints_differences_and_costs() {
     let out = Scratch::new();
     let short = ["compare", SCENE, "--until", "12", "--out", out.text()];
@@ -87,7 +86,6 @@ fn the_command_prints_differences_and_costs() {
 }
 
 #[test]
-#[ignore = "until the second formulation is there"]
 fn a_command_that_stops_says_up_to_when_it_has_compared() {
     let out = Scratch::new();
     let stopped = aerobot(&["compare", FALLING, "--out", out.text()]);
@@ -106,7 +104,6 @@ fn a_command_that_stops_says_up_to_when_it_has_compared() {
 }
 
 #[test]
-#[ignore = "until the second formulation is there"]
 fn a_bad_scene_gets_the_message_of_every_command() {
     let out = Scratch::new();
     let scene = "tests/bad_scenes/negative_mass.ron";

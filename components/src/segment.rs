@@ -73,13 +73,3 @@ pub struct SegmentLoad {
 /// Marks a segment that keeps its length: a rigid link, whose tension is a force of constraint.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RigidLink;
-
-/// A segment that is a uniform rod, half of whose mass counts at each end.
-///
-/// With the velocities v_P and v_Q of its ends its kinetic energy is m/6 (v_P^2 + v_P.v_Q + v_Q^2), which is
-/// that of the halves less m/12 (v_Q - v_P)^2.
-#[derive(Component, Clone, Copy, Debug, PartialEq)]
-pub struct RodMass(
-    /// Mass m of the rod, kg.
-    pub f64,
-);

@@ -8,7 +8,6 @@ use aerobot_systems::denoc::articulated_link::Stretch;
 use aerobot_systems::denoc::kinematics::LimbOffsets;
 use aerobot_systems::denoc::tree::{KinematicTree, LinkKind};
 use aerobot_systems::dynamics::link_mechanism::{LinkMechanism, TreeEntities};
-use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
 
 use crate::builtin::tethers::lumping;
@@ -107,12 +106,19 @@ fn entities(world: &World, found: &WorldTopology, tree: &KinematicTree) -> TreeE
     };
     for limb in &tree.limbs {
         let tether = found.tethers[limb.line];
-        let ends = world.get::<TetherParts>(tether).and_then(|parts| {
-            let end = |point: &Entity| world.get::<Attachment>(*point).copied();
-            Some((end(parts.points.first()?)?, end(parts.points.last()?)?))
-        });
         let (mut offsets, mut anchor) = (LimbOffsets::default(), None);
-        if let Some((from, to)) = ends {
+        if let Some(parts) = world.get::<TetherParts>(tether)
+            && let (Some(first), Some(last)) = (parts.points.first(), parts.points.last())
+            && let (Some(from), Some(to)) = (
+                world.get::<Attachment>(*first),
+                world.get::<Attachment>(*last),
+            )
+        {
+            if limb.is_from_outward {
+                entities.segments.extend(&parts.segments);
+            } else {
+                entities.segments.extend(parts.segments.iter().rev());
+            }
             let (proximal, distal) = if limb.is_from_outward {
                 (from, to)
             } else {
@@ -129,7 +135,6 @@ fn entities(world: &World, found: &WorldTopology, tree: &KinematicTree) -> TreeE
         }
         entities.offsets.push(offsets);
         entities.anchors.push(anchor);
-        entities.tethers.push(tether);
     }
     entities
 }

@@ -102,11 +102,18 @@ impl Simulator {
         start
             .check(&mut world)
             .map_err(|error| scene.refuse(error))?;
-        let stable_step = stable_step::find(&mut world);
         let scales = state.error_scales(&mut world);
-        let first_order = scales[2 * state.layout().coordinates..].to_vec();
+        let coordinates = state.layout().coordinates;
+        let first_order = scales[2 * coordinates..].to_vec();
+        let mut linearisation =
+            Linearisation::new(&mut world, linearise, first_order, topology, solver);
+        let stable_step = if has_links(scene, formulation) {
+            stable_step::find_of_links(&mut world, &mut linearisation, &mut *state)
+        } else {
+            stable_step::find(&mut world)
+        };
         let implicit = Implicit {
-            linearisation: Linearisation::new(&mut world, linearise, first_order, topology, solver),
+            linearisation,
             energy: world.register_system(mechanical_energy),
         };
         let Choice {

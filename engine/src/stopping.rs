@@ -69,7 +69,7 @@ impl Simulation {
                 return None;
             }
             let owner = state.owner(world, index)?;
-            Some(world.get::<EntityName>(owner)?.0.to_string())
+            owner_name(world, owner)
         })?
     }
 }

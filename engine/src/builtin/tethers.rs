@@ -7,7 +7,7 @@ use aerobot_components::inertia::InertiaShape;
 use aerobot_components::run::{Formulation, LinkMass};
 use aerobot_components::scene_component::FieldReport;
 use aerobot_components::segment::{
-    KelvinVoigt, RigidLink, RodMass, Segment, SegmentDrag, SegmentGeometry, SegmentLoad, Tension,
+    KelvinVoigt, RigidLink, Segment, SegmentDrag, SegmentGeometry, SegmentLoad, Tension,
 };
 use aerobot_components::state::{Acceleration, Air, Force, Mass, Origin, Position, Velocity};
 use aerobot_components::tether::{
@@ -264,10 +264,6 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
             parts.segments.push(segment);
             if has_rigid_links(scene, scene.run.formulation) {
                 world.entity_mut(segment).insert(RigidLink);
-            }
-            if has_links(scene, scene.run.formulation) && scene.run.links == LinkMass::Rod {
-                let mass_kg = tether.mass_kg() / f64::from(tether.segments());
-                world.entity_mut(segment).insert(RodMass(mass_kg));
             }
         }
         points = last + 1;

@@ -229,20 +229,6 @@ impl JointVector {
         mechanism.links.clone_from(&self.links);
         mechanism.bodies.copy_from_slice(&self.bodies);
     }
-
-    /// The link that has left its chart, as a fault.
-    fn beyond_chart(&mut self, world: &World, link: usize) -> Fault {
-        let mechanism = world.resource::<LinkMechanism>();
-        let limb = mechanism
-            .tree
-            .limbs
-            .iter()
-            .position(|limb| limb.links.contains(&link));
-        Fault {
-            entity: limb.map(|limb| mechanism.entities.tethers[limb]),
-            message: "a link turns by more than 80 degrees in one step".to_owned(),
-        }
-    }
 }
 
 impl StateSpace for JointVector {
@@ -320,7 +306,10 @@ impl StateSpace for JointVector {
             }
         }
         if let Some(link) = beyond {
-            return Err(self.beyond_chart(world, link));
+            return Err(Fault {
+                entity: Some(world.resource::<LinkMechanism>().entities.segments[link]),
+                message: "a link turns by more than 80 degrees in one step".to_owned(),
+            });
         }
         self.read_anchors(world);
         let mechanism = world.resource::<LinkMechanism>();
@@ -404,10 +393,10 @@ impl StateSpace for JointVector {
         let place = place % self.layout.coordinates.max(1);
         let entities = &world.resource::<LinkMechanism>().entities;
         if place >= self.first_link {
-            let link = (place - self.first_link) / 3;
-            let limbs = &world.resource::<LinkMechanism>().tree.limbs;
-            let limb = limbs.iter().position(|limb| limb.links.contains(&link))?;
-            return Some(entities.tethers[limb]);
+            return entities
+                .segments
+                .get((place - self.first_link) / 3)
+                .copied();
         }
         let starts = |at: &BodyPlace| match at {
             BodyPlace::Base(at) | BodyPlace::Turning(at) => Some(*at),

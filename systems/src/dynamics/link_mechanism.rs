@@ -14,8 +14,8 @@ pub struct TreeEntities {
     pub bodies: Vec<Entity>,
     /// The anchor of each limb that has one.
     pub anchors: Vec<Option<Entity>>,
-    /// The tether of each limb.
-    pub tethers: Vec<Entity>,
+    /// The segment of each link, by its place in the tree.
+    pub segments: Vec<Entity>,
     /// Which bodies turn.
     pub turns: Vec<bool>,
     /// Offsets of the ends of each limb.
@@ -65,5 +65,27 @@ impl LinkMechanism {
             tree,
             entities,
         }
+    }
+
+    /// Kinetic energy of rods beyond that of their halves at their ends, J: it is negative.
+    #[must_use]
+    pub fn kinetic_j(&self) -> f64 {
+        self.of_links(|link, kg| 0.5 * kg * self.links.rate_m_s[link].length_squared())
+    }
+
+    /// Its rate at the last evaluation, W.
+    #[must_use]
+    pub fn kinetic_rate_w(&self) -> f64 {
+        let found = &self.accelerations.span_m_s2;
+        self.of_links(|link, kg| kg * self.links.rate_m_s[link].dot(found[link]))
+    }
+
+    /// Sum over links, by place in the tree and coupling in kg.
+    fn of_links(&self, part: impl Fn(usize, f64) -> f64) -> f64 {
+        let limbs = self.tree.limbs.iter().zip(&self.tree.kinds);
+        limbs
+            .filter(|(_, kind)| kind.coupling_kg != 0.0)
+            .flat_map(|(limb, kind)| limb.links.clone().map(|link| part(link, kind.coupling_kg)))
+            .sum()
     }
 }

@@ -2,18 +2,20 @@
 //!
 //! Kinetic: sum 1/2 m v^2 + sum 1/2 omega' J omega. Potential: sum m phi(z) + sum 1/2 k (L - L0)^2 over
 //! taut segments. Bodies and nodes count, and the masses that tethers put on bodies; masses on anchors
-//! do not.
+//! do not. Of a link that is a rod, half of whose mass m counts at each end, m/12 v^2 is taken off, v the
+//! velocity of one end against the other. Rigid links store nothing.
 
 use aerobot_components::body::Anchor;
-use aerobot_components::segment::{KelvinVoigt, SegmentGeometry};
+use aerobot_components::segment::{KelvinVoigt, RigidLink, SegmentGeometry};
 use aerobot_components::state::{
     Acceleration, AddedInertia, AngularVelocity, Attitude, Force, Inertia, Mass, Position,
     StateIndex, Torque, Velocity,
 };
 use aerobot_components::tether::Attachment;
-use bevy_ecs::query::{QueryData, With};
+use bevy_ecs::query::{QueryData, With, Without};
 use bevy_ecs::system::{Query, Res, SystemParam};
 
+use crate::dynamics::link_mechanism::LinkMechanism;
 use crate::environment::EnvironmentModel;
 
 /// What the air that moves with a body is taken for.
@@ -69,7 +71,8 @@ pub struct EnergySum<'w, 's> {
         ),
     >,
     anchors: Query<'w, 's, (), With<Anchor>>,
-    segments: Query<'w, 's, (&'static KelvinVoigt, &'static SegmentGeometry)>,
+    segments: Query<'w, 's, (&'static KelvinVoigt, &'static SegmentGeometry), Without<RigidLink>>,
+    links: Option<Res<'w, LinkMechanism>>,
 }
 
 impl EnergySum<'_, '_> {
@@ -90,7 +93,7 @@ impl EnergySum<'_, '_> {
         for (mass, _, velocity) in self.free_ends() {
             kinetic_j += 0.5 * mass.0 * velocity.0.length_squared();
         }
-        kinetic_j
+        kinetic_j + self.links.as_ref().map_or(0.0, |links| links.kinetic_j())
     }
 
     /// Potential energy of gravity and springs, J.
@@ -132,7 +135,12 @@ impl EnergySum<'_, '_> {
         for (mass, position, velocity) in self.free_ends() {
             power_w += lift_w(mass, position, velocity);
         }
+        // What the reactions of rods do goes into their kinetic energy.
         power_w
+            + self
+                .links
+                .as_ref()
+                .map_or(0.0, |links| links.kinetic_rate_w())
     }
 
     /// The springs of all segments.
