@@ -12,7 +12,7 @@
 mod flight;
 
 use aerobot::engine::recording::frame::MemorySink;
-use flight::{assert_below, fly, fly_scene, largest_distance_m, summary_of};
+use flight::{assert_below, fly_scene, largest_distance_m, summary_of};
 
 const COMPARISON: &str = "paper/comparison_900m.ron";
 const BRANCHED: &str = "examples/branched_chain.ron";
@@ -294,19 +294,4 @@ fn implicit_steps_from_another_base_differ_by_their_error() {
         println!("from `{base}`: steps {steps_s:?} s, {largest_m:?} m, order {order:.2}");
         assert!((2.7..3.5).contains(&order), "from `{base}`: {order}");
     }
-}
-
-/// A link does not stretch: every length is that of the scene, at every output, to the round-off of an
-/// altitude.
-#[test]
-fn rigid_links_keep_their_length() {
-    let results = fly(
-        THROWN,
-        &[DENOC, "run.integrator=Implicit(accuracy_m: 1e-3)"],
-    );
-    let rows = results.frames.iter().flat_map(|frame| &frame.segments);
-    let largest = rows
-        .map(|row| (row.length_m / 2.0 - 1.0).abs())
-        .fold(0.0, f64::max);
-    assert_below("length, relative", largest, 1e-9);
 }
