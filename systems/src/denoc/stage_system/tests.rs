@@ -182,8 +182,9 @@ fn compare(
         kind.coupling_kg * dot(&v[links..], &w[links..])
     };
     for site in topology.bodies.iter().filter(|site| !site.turns) {
-        for k in site.first_state + 3..site.first_state + 6 {
-            mass[k][k] = 0.0;
+        let turns = site.first_state + 3..site.first_state + 6;
+        for (k, row) in mass.iter_mut().enumerate().skip(turns.start).take(3) {
+            row[k] = 0.0;
         }
     }
     // Rates of the state lie in what the joints allow.
