@@ -18,7 +18,8 @@ fn main() {
     println!("| what | N | cost |");
     println!("|---|---|---|");
     for nodes in [10, 100, 1000] {
-        let mut simulation = line(nodes);
+        let mut simulation = line(nodes, &[]);
+        let mut links = line(nodes, &["run.formulation=Denoc"]);
         let calls = 200_000 / (nodes + 10);
         let forces_ns = least(|| {
             let start = Instant::now();
@@ -27,10 +28,12 @@ fn main() {
                 .expect("the line can be evaluated");
             start.elapsed().as_nanos() as f64 / calls as f64
         });
-        let rates_ns = least(|| {
-            let start = Instant::now();
-            simulation.rates(calls).expect("the line can be evaluated");
-            start.elapsed().as_nanos() as f64 / calls as f64
+        let [rates_ns, links_ns] = [&mut simulation, &mut links].map(|simulation| {
+            least(|| {
+                let start = Instant::now();
+                simulation.rates(calls).expect("the line can be evaluated");
+                start.elapsed().as_nanos() as f64 / calls as f64
+            })
         });
         let segments = (nodes + 1) as f64;
         println!(
@@ -43,9 +46,17 @@ fn main() {
             rates_ns / 1e3,
             rates_ns / segments
         );
+        println!(
+            "| the same of rigid links | {nodes} | {:.2} us, {:.1} ns per segment |",
+            links_ns / 1e3,
+            links_ns / segments
+        );
     }
-    let (step_us, _) = comparison(&["run.integrator=Fixed()", "run.duration_s=10"]);
+    let rk4 = ["run.integrator=Fixed()", "run.duration_s=10"];
+    let (step_us, _) = comparison(&rk4);
     println!("| RK4 step of the 900 m case | 10 | {step_us:.2} us |");
+    let (step_us, _) = comparison(&[rk4[0], rk4[1], "run.formulation=Denoc"]);
+    println!("| the same of rigid links | 10 | {step_us:.2} us |");
     let (_, speed) = comparison(&[]);
     println!(
         "| `comparison_900m.ron` as shipped, with nothing written | 10 | {speed:.0} simulated s per s |"
@@ -53,7 +64,7 @@ fn main() {
 }
 
 /// A 1 km line in the air of Venus with a probe at its end: no body but that weighs in.
-fn line(nodes: usize) -> Simulation {
+fn line(nodes: usize, overrides: &[&str]) -> Simulation {
     let scene = format!(
         r#"(
             name: "line",
@@ -74,7 +85,7 @@ fn line(nodes: usize) -> Simulation {
             run: (duration_s: 1, output_every_s: 1, record: (channels: None)),
         )"#
     );
-    build(scene, &[])
+    build(scene, overrides)
 }
 
 /// Microseconds per step, and simulated seconds per second, of the comparison case.

@@ -113,6 +113,56 @@ fn bob_series(overrides: &[&str]) -> Vec<(f64, f64, f64)> {
         .collect()
 }
 
+/// The period of a rigid pendulum of any amplitude is 2 pi sqrt(l / g) over the arithmetic-geometric mean of
+/// 1 and cos(amplitude / 2) (Gauss), s; l is the length of the equivalent simple pendulum, m.
+fn pendulum_period(length_m: f64, amplitude_rad: f64) -> f64 {
+    let (mut a, mut g) = (1.0, (0.5 * amplitude_rad).cos());
+    for _ in 0..10 {
+        (a, g) = (0.5 * (a + g), (a * g).sqrt());
+    }
+    TAU * (length_m / G).sqrt() / a
+}
+
+/// In rigid links the elastic pendulum is a simple one: its line keeps 10 m.
+#[test]
+fn a_rigid_link_swings_as_a_simple_pendulum() {
+    let series = bob_series(&["run.formulation=Denoc"]);
+    let period = mean_period(&series, 19);
+    // The reference prints 6.780180 s for 10.00887 m, and periods go as the root of the length.
+    let printed = 6.780_180 * (10.0_f64 / 10.008_87).sqrt();
+    assert_relative("printed", period, printed, 1e-7);
+    // A step errs by 1e-12; 20 periods add some hundred steps each.
+    assert_relative("closed form", period, pendulum_period(10.0, 0.5), 1e-10);
+}
+
+/// A link with mass is a uniform rod: with a bob m at its end the equivalent length is
+/// (M/3 + m) l / (M/2 + m). A point mass on its middle, or half of it at either end, would be another.
+#[test]
+fn a_rod_swings_as_a_compound_pendulum() {
+    let series = bob_series(&[
+        "run.formulation=Denoc",
+        "entities.line.Tether.diameter_m=0.01",
+        "entities.line.Tether.density_kg_m3=2000",
+    ]);
+    let rod = 2000.0 * 10.0 * PI * 0.005 * 0.005;
+    let length = 10.0 * (rod / 3.0 + 1.0) / (0.5 * rod + 1.0);
+    let period = mean_period(&series, 19);
+    assert_relative("closed form", period, pendulum_period(length, 0.5), 1e-10);
+}
+
+/// A rod carries on average what hangs below its middle; the force on the top is the whole weight.
+#[test]
+fn rigid_links_carry_what_hangs_below() {
+    let sink = run_example("hanging_cable.ron", &["run.formulation=Denoc"]);
+    let frame = sink.frames.last().expect("rows");
+    let count = frame.segments.len() as f64;
+    for row in &frame.segments {
+        let below = 5.0 * (count - f64::from(row.segment) + 0.5) / count;
+        assert_relative("tension", row.tension_n, (20.0 + below) * G, 1e-9);
+        assert_relative("length", row.length_m, 1000.0 / count, 1e-13);
+    }
+}
+
 /// T = 2 pi sqrt(l / g) for small angles: at rest the line is l = L + m g L / EA = 10.00887 m long,
 /// and it does not stretch in first order of the angle.
 #[test]

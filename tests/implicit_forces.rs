@@ -66,24 +66,43 @@ impl Plugin for LeashPlugin {
 
 /// A stone on a line from an anchor, on a leash besides.
 fn leashed(leash: &str, integrator: &str) -> (MemorySink, u64) {
+    leashed_in("LumpedMass", 2e4, leash, integrator)
+}
+
+/// The same in a formulation, with a line of this stiffness in N.
+fn leashed_in(
+    formulation: &str,
+    stiffness_n: f64,
+    leash: &str,
+    integrator: &str,
+) -> (MemorySink, u64) {
     let mut simulator = Simulator::new();
     simulator.add_plugin(&LeashPlugin);
+    // The line starts straight, as long as the pose wants it or as it is.
+    let stone_z = if stiffness_n < 1e6 {
+        54_901.0
+    } else {
+        55_000.0 - (99.0_f64 * 99.0 - 104.0).sqrt() - 0.2
+    };
     let text = format!(
         r#"(
             name: "leashed", environment: (atmosphere: Vira, wind: [Uniform(velocity_m_s: (3, 1, 0))]),
             entities: {{
                 "top": (Fixed: (position_m: (0, 0, 55000))),
                 "stone": (
-                    Body: (mass_kg: 5, inertia: Box(0.3, 0.2, 0.4)), Pose: (position_m: (10, 2, 54901)),
+                    Body: (mass_kg: 5, inertia: Box(0.3, 0.2, 0.4)), Pose: (position_m: (10, 2, {stone_z})),
                     Drag: Constant(coefficient: 1, area_m2: 0.05), Leash: ({leash}),
                 ),
                 "line": (Tether: (
                     from: ("top", Centre), to: ("stone", Top), length_m: 99, nodes: 8, diameter_m: 0.002,
-                    density_kg_m3: 1440, axial_stiffness_n: 2e4, damping_n_s_m: 5,
+                    density_kg_m3: 1440, axial_stiffness_n: {stiffness_n}, damping_n_s_m: 5,
                     drag: (normal: 1, tangential: 0.03), start: Straight,
                 )),
             }},
-            run: (duration_s: 20, output_every_s: 5, integrator: {integrator}, record: (channels: All)),
+            run: (
+                formulation: {formulation}, links: PointMass, duration_s: 20, output_every_s: 5,
+                integrator: {integrator}, record: (channels: All),
+            ),
         )"#
     );
     let scene = load(&simulator, &text, &[]);
@@ -117,6 +136,28 @@ fn a_stiff_force_with_derivatives_costs_no_steps() {
     // What the weight, the drag and the line can move it by.
     assert_below("a stiff leash", away, 1e-4);
     assert!(steps < 1000, "{steps}");
+}
+
+/// A user's force acts on what rigid links carry: either integrator, with derivatives and without, and
+/// lumped masses on a line 10 000 times as stiff.
+#[test]
+fn a_force_acts_on_what_rigid_links_carry() {
+    let leash = |derivatives: &str| {
+        format!(
+            "place_m: (0, 0, 54900), stiffness_n_m: 20, damping_n_s_m: 2, derivatives: {derivatives}"
+        )
+    };
+    let links = |leash: &str, integrator: &str| leashed_in("Denoc", 2e8, leash, integrator).0;
+    let expected = links(&leash("false"), "Adaptive(relative_tolerance: 1e-10)");
+    for derivatives in ["false", "true"] {
+        let found = links(&leash(derivatives), "Implicit(accuracy_m: 1e-8)");
+        assert_below("implicit", largest_distance_m(&found, &expected), 1e-6);
+    }
+    let implicit = "Implicit(accuracy_m: 1e-4)";
+    let (stretching, _) = leashed_in("LumpedMass", 2e8, &leash("true"), implicit);
+    let stones = stretching.states("stone").zip(expected.states("stone"));
+    let apart = stones.map(|((_, a), (_, b))| a.position_m.distance(b.position_m));
+    assert_below("a line of 2e8 N", apart.fold(0.0, f64::max), 1e-3);
 }
 
 /// A stiff force stands without any tether too, and `Auto` finds that implicit steps pay.

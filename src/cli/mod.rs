@@ -132,7 +132,8 @@ struct ReproduceArguments {
     /// Write into a folder that exists.
     #[arg(long)]
     force: bool,
-    /// Number of nodes of each tether; the case's own unless given.
+    /// Number of nodes of each tether, the largest where a case goes through many; the case's own
+    /// unless given.
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     nodes: Option<u32>,
     /// Simulated time at which runs end, s; the case's own unless given.

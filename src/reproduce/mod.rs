@@ -3,6 +3,7 @@
 //! A program that wants the numbers and not the text calls the module of a case, such as
 //! [`towing::compare`].
 
+pub mod performance;
 pub mod towing;
 
 use std::path::Path;
@@ -34,7 +35,7 @@ pub trait Case {
 /// All cases, in the order of the paper.
 #[must_use]
 pub fn cases() -> Vec<Box<dyn Case>> {
-    vec![Box::new(towing::Towing)]
+    vec![Box::new(performance::Performance), Box::new(towing::Towing)]
 }
 
 /// What may be asked of a case; what is left open is as the case has it.

@@ -67,7 +67,7 @@ fn check_loops(scene: &Scene, report: &mut FieldReport) {
                 [one] => format!("the tether `{one}` closes a loop by itself"),
                 _ => format!("the tethers `{}` close a loop", names.join("`, `")),
             };
-            let through = if names.len() > 1 && passes_anchors(scene, &names) {
+            let through = if passes_anchors(scene, &names) {
                 " through the anchors that hold them"
             } else {
                 ""
@@ -84,11 +84,15 @@ fn check_loops(scene: &Scene, report: &mut FieldReport) {
     }
 }
 
+/// Whether a loop is closed by anchors, which do not move against one another.
 fn passes_anchors(scene: &Scene, tethers: &[&str]) -> bool {
     let of = |name: &&str| scene.entity(name)?.get::<Tether>();
     let ends = tethers.iter().filter_map(of);
-    ends.flat_map(|tether| [&tether.from.0, &tether.to.0])
-        .any(|name| corner(scene, name).is_empty())
+    let anchors: BTreeSet<&str> = ends
+        .flat_map(|tether| [tether.from.0.as_str(), tether.to.0.as_str()])
+        .filter(|name| corner(scene, name).is_empty())
+        .collect();
+    anchors.len() > 1
 }
 
 /// The tethers by which one corner is reached from another, if it is.

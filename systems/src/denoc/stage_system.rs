@@ -384,3 +384,6 @@ fn negated(load: Twist) -> Twist {
         angular: -load.angular,
     }
 }
+
+#[cfg(test)]
+mod tests;

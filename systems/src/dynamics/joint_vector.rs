@@ -364,17 +364,13 @@ impl StateSpace for JointVector {
             rates[at..at + 3].copy_from_slice(&state[n + at..n + at + 3]);
         }
         let found = &world.resource::<LinkMechanism>().accelerations.span_m_s2;
-        for link in 0..self.charts.len() {
-            let kind = &self.kinds[link];
+        let spans = self.links.span_m.iter().zip(&self.links.rate_m_s);
+        let links = self.charts.iter_mut().zip(&self.kinds).zip(spans);
+        for (link, (((chart, kind), (span, rate)), found)) in links.zip(found).enumerate() {
             let at = self.first_link + 3 * link;
-            let (chart, rate) = LinkChart::around(
-                self.links.span_m[link],
-                self.links.rate_m_s[link],
-                kind.length_m,
-                kind.stretch,
-            );
-            let acceleration = chart.acceleration(found[link], kind.length_m, kind.stretch);
-            self.charts[link] = chart;
+            let (centre, rate) = LinkChart::around(*span, *rate, kind.length_m, kind.stretch);
+            let acceleration = centre.acceleration(*found, kind.length_m, kind.stretch);
+            *chart = centre;
             state[at..at + 3].fill(0.0);
             rate.write_to_slice(&mut state[n + at..]);
             rate.write_to_slice(&mut rates[at..]);

@@ -13,6 +13,8 @@
 
 pub mod body_block;
 pub mod chain;
+#[cfg(test)]
+pub(crate) mod dense_motion;
 pub mod derivatives;
 pub mod error_norm;
 pub mod few_bodies;

@@ -52,8 +52,9 @@ fn solve(mut h: Matrix, mut r: Vec<f64>, sizes: &[usize]) -> (Vec<f64>, Vec<f64>
         pivots[k] = h[k][k];
         for i in 0..k {
             let factor = h[i][k] / h[k][k];
-            for j in 0..=k {
-                h[i][j] -= factor * h[k][j];
+            let (above, below) = h.split_at_mut(k);
+            for (value, pivot) in above[i].iter_mut().zip(&below[0]).take(k + 1) {
+                *value -= factor * pivot;
             }
             r[i] -= factor * r[k];
         }
@@ -193,6 +194,20 @@ fn body_member(
     }
 }
 
+/// Adds B N_l of the parent to the rows of a member: its joint moves with the twist of the parent, and
+/// angular velocities are joint rates.
+fn carry(n_l: &mut Matrix, member: usize, parent: usize, arm_m: DVec3) {
+    let rows = n_l[6 * parent..6 * parent + 6].to_vec();
+    for (column, _) in rows[0].iter().enumerate() {
+        let v = DVec3::from_array(std::array::from_fn(|r| rows[r][column]));
+        let omega = DVec3::from_array(std::array::from_fn(|r| rows[r + 3][column]));
+        let moved = v + omega.cross(arm_m);
+        for r in 0..3 {
+            n_l[6 * member + r][column] += moved[r];
+        }
+    }
+}
+
 /// Accelerations of the joints from the dense equations, and the logarithms of det D block by block.
 fn dense_solution(sample: &Sample, members: &[Member]) -> (Vec<f64>, Vec<f64>) {
     let n = members.len();
@@ -219,16 +234,7 @@ fn dense_solution(sample: &Sample, members: &[Member]) -> (Vec<f64>, Vec<f64>) {
         add(&mut n_l, 6 * i, 6 * i, DMat3::IDENTITY);
         add(&mut n_l, 6 * i + 3, 6 * i + 3, DMat3::IDENTITY);
         if let Some(p) = member.parent {
-            // B: the joint moves with the twist of the parent; angular velocities are joint rates.
-            let turn = -cross_matrix(member.arm_m);
-            for column in 0..6 * n {
-                let v = DVec3::from_array(std::array::from_fn(|r| n_l[6 * p + r][column]));
-                let omega = DVec3::from_array(std::array::from_fn(|r| n_l[6 * p + 3 + r][column]));
-                let moved = v + turn * omega;
-                for r in 0..3 {
-                    n_l[6 * i + r][column] += moved[r];
-                }
-            }
+            carry(&mut n_l, i, p, member.arm_m);
             let omega = members[p].omega;
             proximal[i] = proximal[p] + omega.cross(omega.cross(member.arm_m));
         } else if !member.is_base {
