@@ -16,6 +16,7 @@ use std::f64::consts::{PI, TAU};
 
 use aerobot::engine::recording::frame::MemorySink;
 use flight::{assert_below, assert_relative, fly_scene};
+use glam::DVec3;
 
 const G: f64 = 8.87;
 
@@ -235,6 +236,41 @@ fn a_hanging_cable_stretches_as_the_continuous_one() {
     }
     assert_relative("reference, elongation", elongation, 0.997_875, 1e-12);
     assert_relative("reference, force", weight, 221.75, 1e-12);
+}
+
+/// A tree of rigid links at rest by statics: every link carries what hangs below its middle; the gondola
+/// tilts until the pull of the tether, the weights of its two lines, and its own at the centre have no moment:
+/// r_tether F - r_a F_a - r_b F_b, in its own frame, is the vertical.
+#[test]
+fn a_branched_chain_hangs_as_statics_has_it() {
+    let mass = |length: f64, diameter: f64| 1440.0 * length * PI * 0.25 * diameter * diameter;
+    let (tether, a, b) = (mass(300.0, 0.002), mass(120.0, 0.0015), mass(60.0, 0.0015));
+    let below = 100.0 + (8.0 + a) + (12.0 + b);
+    for links in ["Rod", "PointMass"] {
+        let sink = run_example(
+            "branched_chain.ron",
+            &[&format!("run.links={links}"), "run.duration_s=5"],
+        );
+        for frame in [&sink.frames[0], &sink.frames[5]] {
+            for row in &frame.segments {
+                let (mass, count, load) = match &*row.tether {
+                    "tether" => (tether, 7.0, below),
+                    "line-a" => (a, 5.0, 8.0),
+                    _ => (b, 3.0, 12.0),
+                };
+                let carried = load + mass * (count - f64::from(row.segment) + 0.5) / count;
+                let what = format!("{links}, {}/{}", row.tether, row.segment);
+                assert_relative(&what, row.tension_n, carried * G, 1e-9);
+            }
+        }
+        let moment = below * DVec3::new(0.1, 0.0, 0.5)
+            - (8.0 + a) * DVec3::new(0.4, 0.0, -0.5)
+            - (12.0 + b) * DVec3::new(-0.4, 0.1, -0.5);
+        for (t, tilt) in sink.channel("gondola", "tilt_rad") {
+            let what = format!("{links}, tilt of the gondola at {t} s");
+            assert_relative(&what, tilt, moment.angle_between(DVec3::Z), 1e-9);
+        }
+    }
 }
 
 /// Height above equilibrium and its rate.
