@@ -234,7 +234,7 @@ fn rods_meet_point_masses_on_a_branched_chain() {
     let cuts = [[5, 3, 1], [11, 7, 3], [23, 15, 7]];
     let between = |rods: &[&str], points: &[&str]| {
         cuts.map(|cut| {
-            let mut more = vec![implicit(1e-6)];
+            let mut more = vec![implicit(3e-6)];
             for (tether, nodes) in ["tether", "line-a", "line-b"].iter().zip(cut) {
                 more.push(format!("entities.{tether}.Tether.nodes={nodes}"));
             }
