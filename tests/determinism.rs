@@ -124,15 +124,20 @@ fn a_scene_with_a_table_can_be_run_from_its_results() {
 /// Systems that the schedules leave unordered may run in any order.
 #[test]
 fn the_order_of_systems_is_not_in_the_files() {
-    let overrides = ["run.duration_s=15", "run.record=(channels: All)"];
-    let fly = |seed: Option<u64>| {
+    let fly = |formulation: &str, seed: Option<u64>| {
+        let formulation_field = format!("run.formulation={formulation}");
+        let overrides = [
+            "run.duration_s=15",
+            "run.record=(channels: All)",
+            &formulation_field,
+        ];
         let mut simulator = Simulator::new();
         if let Some(seed) = seed {
             simulator.set_shuffle_seed(seed);
         }
         let file = scene_file("paper/comparison_900m.ron");
         let scene = simulator.load(&file, &owned(&overrides)).unwrap();
-        let folder = Folder::new(&format!("shuffle-{seed:?}"));
+        let folder = Folder::new(&format!("shuffle-{formulation}-{seed:?}"));
         let destination = Destination {
             folder: folder.0.clone(),
             overwrite: false,
@@ -141,9 +146,11 @@ fn the_order_of_systems_is_not_in_the_files() {
         assert_eq!(finished.summary.outcome, "done");
         folder
     };
-    let plain = fly(None);
-    for seed in [1, 20, 300] {
-        assert_same_bytes(&plain.0, &fly(Some(seed)).0);
+    for formulation in ["LumpedMass", "Denoc"] {
+        let plain = fly(formulation, None);
+        for seed in [1, 20, 300] {
+            assert_same_bytes(&plain.0, &fly(formulation, Some(seed)).0);
+        }
     }
 }
 

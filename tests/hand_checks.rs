@@ -14,8 +14,9 @@ mod flight;
 
 use std::f64::consts::{PI, TAU};
 
+use aerobot::engine::plugin::Simulator;
 use aerobot::engine::recording::frame::MemorySink;
-use flight::{assert_below, assert_relative, fly_scene};
+use flight::{assert_below, assert_relative, fly_scene, owned, run_for_summary, scene_file};
 use glam::DVec3;
 
 const G: f64 = 8.87;
@@ -236,6 +237,47 @@ fn a_hanging_cable_stretches_as_the_continuous_one() {
     }
     assert_relative("reference, elongation", elongation, 0.997_875, 1e-12);
     assert_relative("reference, force", weight, 221.75, 1e-12);
+}
+
+/// A bob thrown from the bottom at v, past the horizontal but not over the top, pulls on its link with
+/// m (v^2 / l - 2 g + 3 g cos(angle)) and pushes where that is negative (energy and centripetal force): the
+/// recorded tension, and the time of the event, which comes with the first step beyond.
+#[test]
+fn a_rigid_link_pulls_and_pushes_as_a_pendulum_says() {
+    let speed = 14.0;
+    let (sink, summary) = {
+        let simulator = Simulator::new();
+        let overrides = owned(&[
+            "run.formulation=Denoc",
+            "entities.bob.Pose.position_m=(0, 0, -10)",
+            "entities.bob.Motion=(velocity_m_s: (14, 0, 0))",
+            "run.duration_s=2",
+            "run.output_every_s=0.01",
+        ]);
+        let file = scene_file("examples/elastic_pendulum.ron");
+        let scene = simulator.load(&file, &overrides).expect("a scene");
+        run_for_summary(&simulator, &scene)
+    };
+    let tension = |cosine: f64| speed * speed / 10.0 - 2.0 * G + 3.0 * G * cosine;
+    let mut pushed_since = None;
+    for (frame, (time, row)) in sink.frames.iter().zip(sink.states("bob")) {
+        let expected = tension(-row.position_m.z / 10.0);
+        let found = frame.segments[0].tension_n;
+        // Of some 50 N; a tolerance of 1e-12 and some hundred steps.
+        assert!(
+            (found - expected).abs() < 1e-8,
+            "{time} s: {found} N, {expected} N"
+        );
+        if expected < 0.0 && pushed_since.is_none() {
+            pushed_since = Some(time);
+        }
+    }
+    let first_output = pushed_since.expect("the bob does not get over the top");
+    let event = &summary.events[0];
+    println!("{event:?}, first output {first_output} s");
+    assert_eq!((&*event.kind, &*event.entity), ("compression", "line/1"));
+    assert!(event.time_s <= first_output && event.time_s > first_output - 0.01);
+    assert_eq!(summary.events.len(), 1);
 }
 
 /// A tree of rigid links at rest by statics: every link carries what hangs below its middle; the gondola
