@@ -139,7 +139,7 @@ fn elastic_rods_become_rigid_rods_as_the_tether_stiffens() {
 #[test]
 fn elastic_point_mass_links_are_lumped_masses() {
     let overrides = [
-        "run.duration_s=30",
+        "run.duration_s=20",
         "run.integrator=Adaptive(relative_tolerance: 1e-11)",
     ];
     let links = [overrides.as_slice(), &[DENOC, POINT_MASSES, ELASTIC]].concat();
@@ -264,7 +264,7 @@ fn rods_meet_point_masses_on_a_branched_chain() {
 fn distance_from_base_m(base: &str, overrides: &[&str]) -> f64 {
     let from = |base: &str| {
         let base = format!("run.base=\"{base}\"");
-        let all = [&[DENOC, "run.duration_s=30", &base], overrides].concat();
+        let all = [&[DENOC, "run.duration_s=20", &base], overrides].concat();
         fly_scene(BRANCHED, &all)
     };
     largest_distance_m(&from("gondola"), &from(base))

@@ -42,11 +42,11 @@ fn error_m(found: &MemorySink, exact: &MemorySink) -> f64 {
     largest
 }
 
-const EXACT: &str = "Adaptive(relative_tolerance: 1e-10)";
+const EXACT: &str = "Adaptive(relative_tolerance: 1e-9)";
 
 /// The comparison case with its gusts: the implicit method is of third order, whose derivatives are exact
 /// only but for added mass and gyroscopic terms; drag has kinks where a segment turns in the wind, so the
-/// order is that of a straight line through three steps. The exact run is good to 1e-9 m.
+/// order is that of a straight line through three steps. The exact run is good to 1e-8 m.
 #[test]
 fn rosenbrock_is_of_third_order_on_rigid_links_in_gusts() {
     for links in LINKS {
