@@ -214,7 +214,6 @@ fn a_link_that_pushes_is_an_event_and_a_warning() {
 
 /// Free fall in vacuum: no link carries anything, and what round-off leaves of its force is no push.
 #[test]
-#[ignore = "a link without load logs `compression` at 1e-27 N: the threshold is a part of the largest tension"]
 fn links_without_load_do_not_push() {
     let (results, summary) = summary_of(
         r#"(

@@ -20,7 +20,8 @@ pub struct RunSpec {
     #[serde(default)]
     pub elastic_links: bool,
     /// The body from which the tree of `Denoc` grows. Unless given it is the one called `gondola`, or else
-    /// the one with most tethers; an anchor always is. It changes nothing but round-off.
+    /// the one with most tethers; an anchor always is. It changes coordinates and so the errors of steps,
+    /// nothing else.
     #[serde(default)]
     pub base: Option<String>,
     /// Simulated time, s.

@@ -4,12 +4,15 @@
 use aerobot_components::segment::RigidLink;
 use aerobot_components::state::{Position, StateIndex, Velocity};
 use aerobot_components::tether::{Tether, TetherNode};
+use aerobot_systems::dynamics::link_mechanism::LinkMechanism;
+use aerobot_systems::linearised_motion::topology::BodyIndex;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::query::{With, Without};
 use bevy_ecs::world::World;
 use glam::DVec3;
 
 use crate::scene::SetupError;
+use crate::stopping::owner_name;
 use crate::world::{EntityName, Warnings};
 
 /// Bodies may be moved by this part of the longest tether, about what a tether stretches at most.
@@ -64,8 +67,8 @@ impl Start {
                 return Err(SetupError::new(
                     format!("entities.{name}"),
                     format!(
-                        "`{name}` starts {shift_m:.6} m from where the rigid links of its tether can \
-                         hold it"
+                        "`{name}` starts {shift_m:.6} m from where the rigid links of `{}` can hold it",
+                        carrier(world, *entity)
                     ),
                     "place the bodies as far apart as the tether is long, leave out a `Pose`, or set \
                      `elastic_links: true`",
@@ -89,4 +92,16 @@ impl Start {
         }
         Ok(())
     }
+}
+
+/// The tether that carries a body in the tree.
+fn carrier(world: &World, body: Entity) -> String {
+    let found = || {
+        let index = world.get::<BodyIndex>(body)?.0;
+        let mechanism = world.get_resource::<LinkMechanism>()?;
+        let limb = mechanism.tree.carried_by[index]?;
+        let first = mechanism.tree.limbs[limb].links.start;
+        owner_name(world, mechanism.entities.segments[first])
+    };
+    found().unwrap_or_default()
 }

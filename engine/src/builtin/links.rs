@@ -6,9 +6,11 @@ use aerobot_components::body::{Body, Fixed, Moving};
 use aerobot_components::run::Formulation;
 use aerobot_components::scene_component::FieldReport;
 use aerobot_components::segment::{RigidLink, Segment, Tension};
+use aerobot_components::state::Mass;
 use aerobot_components::tether::Tether;
 use aerobot_systems::clock::Clock;
 use aerobot_systems::dynamics::links::{accelerate_by_links, add_reactions, solve_links};
+use aerobot_systems::linearised_motion::topology::BodyIndex;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::query::With;
 use bevy_ecs::schedule::IntoScheduleConfigs;
@@ -21,8 +23,11 @@ use crate::scene::{Scene, SceneEntity};
 use crate::schedule::Phase;
 use crate::world::{EntityName, EventLog, Warnings};
 
-/// A tension below this part of the largest one is a push and not round-off.
+/// A tension below this part of the largest force on any body is a push and not round-off.
 const ROUND_OFF: f64 = 1e-9;
+
+/// For the size of forces, m/s^2.
+const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 
 /// Equations of motion of trees of links, after everything that loads them.
 pub struct LinksPlugin;
@@ -174,13 +179,16 @@ fn log_compression(
     mut events: ResMut<EventLog>,
     mut warnings: ResMut<Warnings>,
     links: Query<(&Segment, &Tension), With<RigidLink>>,
+    bodies: Query<&Mass, With<BodyIndex>>,
     names: Query<&EntityName>,
     mut seen: Local<BTreeSet<Entity>>,
 ) {
+    // What a body weighs on Earth is large against the round-off of any force here.
+    let heaviest = bodies.iter().map(|mass| mass.0).fold(0.0, f64::max);
     let largest = links
         .iter()
         .map(|(_, tension)| tension.0.abs())
-        .fold(0.0, f64::max);
+        .fold(STANDARD_GRAVITY_M_S2 * heaviest, f64::max);
     let mut pushed: BTreeMap<Entity, u32> = BTreeMap::new();
     for (segment, tension) in &links {
         if tension.0 < -ROUND_OFF * largest && !seen.contains(&segment.tether) {
