@@ -22,8 +22,8 @@
 //!
 //! and one sweep inward and one outward solve for u'. After a spherical joint a torque-free end is left:
 //! what is passed on acts on the acceleration of the joint alone, a symmetric 3x3 block. Only that block
-//! exists here ([`articulated_link`], [`articulated_body`]); the rotational blocks, which are zero and
-//! which round-off would fill until long chains blow up, are never computed.
+//! exists here ([`articulated_link`], [`articulated_body`]); the rotational blocks are zero and are never
+//! computed: left as differences, their round-off can grow from link to link.
 //!
 //! The same recursion with other blocks solves the linear systems of an implicit step
 //! ([`stage_system`]). Joint coordinates have no singularities ([`joint_coordinates`]).
