@@ -7,6 +7,7 @@ pub mod contents;
 pub mod evaluation;
 mod integrator_choice;
 mod linearisation;
+mod link_stable_step;
 mod link_start;
 mod link_tree;
 pub mod placement;

@@ -2,89 +2,68 @@
 //! motions of a scene stretch them, bodies start where, and as fast as, the links let them.
 
 use aerobot_components::segment::RigidLink;
-use aerobot_components::state::{Position, StateIndex, Velocity};
-use aerobot_components::tether::{Tether, TetherNode};
-use aerobot_systems::dynamics::link_mechanism::LinkMechanism;
-use aerobot_systems::linearised_motion::topology::BodyIndex;
+use aerobot_components::state::{Attitude, Position, StateIndex, Velocity};
+use aerobot_components::tether::{Attachment, Tether, TetherNode, TetherParts, TetherStart};
 use bevy_ecs::entity::Entity;
 use bevy_ecs::query::{With, Without};
 use bevy_ecs::world::World;
 use glam::DVec3;
 
 use crate::scene::SetupError;
-use crate::stopping::owner_name;
 use crate::world::{EntityName, Warnings};
 
-/// Bodies may be moved by this part of the longest tether, about what a tether stretches at most.
+/// The ends of a tether may be moved against one another by this part of its length: about what tethers
+/// stretch at most.
 const LARGEST_SHIFT: f64 = 0.02;
-/// Moved by less than this part of the longest tether, nobody is told.
-const NO_SHIFT: f64 = 1e-7;
-/// A change of velocity of which nobody is told, m/s.
-const NO_SPEED_M_S: f64 = 1e-7;
+/// Shifts of which nobody is told, m.
+const NO_SHIFT_M: f64 = 1e-5;
+/// Changes of velocity of which nobody is told, m/s.
+const NO_SPEED_M_S: f64 = 1e-6;
 
-/// Where free bodies were, and how they moved.
-pub(crate) struct Start(Vec<(Entity, DVec3, DVec3)>);
+/// Where things were before links took hold of them.
+pub(crate) struct Start {
+    /// Free bodies: position (m) and velocity (m/s).
+    bodies: Vec<(Entity, DVec3, DVec3)>,
+    /// Tethers of rigid links: from end to end, m.
+    tethers: Vec<(Entity, DVec3)>,
+}
 
 impl Start {
     /// As the components have them.
     pub(crate) fn of(world: &mut World) -> Self {
-        let mut bodies = world
-            .query_filtered::<(Entity, &Position, &Velocity), (With<StateIndex>, Without<TetherNode>)>(
-            );
-        Self(
-            bodies
-                .iter(world)
-                .map(|(entity, position, velocity)| (entity, position.0, velocity.0))
-                .collect(),
-        )
+        Self {
+            bodies: bodies(world),
+            tethers: tethers(world),
+        }
     }
 
     /// Compares with what the links have made of it; warns of small changes.
     ///
     /// # Errors
-    /// A body is not where its links can be.
+    /// A tether whose ends its links cannot join.
     pub(crate) fn check(&self, world: &mut World) -> Result<(), SetupError> {
-        let is_rigid = world
-            .query_filtered::<(), With<RigidLink>>()
-            .iter(world)
-            .next()
-            .is_some();
-        if !is_rigid {
+        for ((tether, before), (_, now)) in self.tethers.iter().zip(tethers(world)) {
+            let shift_m = before.distance(now);
+            let length_m = world.get::<Tether>(*tether).map_or(0.0, |t| t.length_m);
+            if shift_m > LARGEST_SHIFT * length_m {
+                return Err(out_of_reach(world, *tether, shift_m));
+            }
+        }
+        if self.tethers.is_empty() {
             return Ok(());
         }
-        let longest_m = world
-            .query::<&Tether>()
-            .iter(world)
-            .map(|tether| tether.length_m)
-            .fold(0.0, f64::max);
-        for (entity, position_m, velocity_m_s) in &self.0 {
-            let name = world
-                .get::<EntityName>(*entity)
-                .map_or_else(String::new, |name| name.0.to_string());
-            let now = world.get::<Position>(*entity).copied().unwrap_or_default();
-            let shift_m = now.0.distance(*position_m);
-            if shift_m > LARGEST_SHIFT * longest_m {
-                return Err(SetupError::new(
-                    format!("entities.{name}"),
-                    format!(
-                        "`{name}` starts {shift_m:.6} m from where the rigid links of `{}` can hold it",
-                        carrier(world, *entity)
-                    ),
-                    "place the bodies as far apart as the tether is long, leave out a `Pose`, or set \
-                     `elastic_links: true`",
-                ));
-            }
-            let speed = world.get::<Velocity>(*entity).copied().unwrap_or_default();
-            let speed_m_s = speed.0.distance(*velocity_m_s);
-            let mut warn = |text: String| world.resource_mut::<Warnings>().0.push(text);
-            if shift_m > NO_SHIFT * longest_m {
-                warn(format!(
+        for ((entity, was_m, was_m_s), (_, is_m, is_m_s)) in self.bodies.iter().zip(bodies(world)) {
+            let name = name(world, *entity);
+            let (shift_m, speed_m_s) = (was_m.distance(is_m), was_m_s.distance(is_m_s));
+            let warnings = &mut world.resource_mut::<Warnings>().0;
+            if shift_m > NO_SHIFT_M {
+                warnings.push(format!(
                     "`{name}` starts {shift_m:.6} m from its place in the scene: rigid links do not \
                      stretch"
                 ));
             }
             if speed_m_s > NO_SPEED_M_S {
-                warn(format!(
+                warnings.push(format!(
                     "`{name}` starts at another velocity than in the scene, by {speed_m_s:.6} m/s: rigid \
                      links do not let it move as told"
                 ));
@@ -94,14 +73,61 @@ impl Start {
     }
 }
 
-/// The tether that carries a body in the tree.
-fn carrier(world: &World, body: Entity) -> String {
-    let found = || {
-        let index = world.get::<BodyIndex>(body)?.0;
-        let mechanism = world.get_resource::<LinkMechanism>()?;
-        let limb = mechanism.tree.carried_by[index]?;
-        let first = mechanism.tree.limbs[limb].links.start;
-        owner_name(world, mechanism.entities.segments[first])
+fn out_of_reach(world: &World, tether: Entity, shift_m: f64) -> SetupError {
+    let name = name(world, tether);
+    let is_laid = world
+        .get::<Tether>(tether)
+        .is_some_and(|tether| tether.start != TetherStart::Equilibrium);
+    let help = if is_laid {
+        "let its `start` and the poses at its ends make it as long as it is, or set \
+         `run.elastic_links: true`"
+    } else {
+        "let the poses at its ends be as far apart as it is long, leave out a `Pose`, or set \
+         `run.elastic_links: true`"
     };
-    found().unwrap_or_default()
+    SetupError::new(
+        format!("entities.{name}"),
+        format!("the rigid links of `{name}` miss the places of its ends by {shift_m:.6} m"),
+        help,
+    )
+}
+
+fn name(world: &World, entity: Entity) -> String {
+    world
+        .get::<EntityName>(entity)
+        .map_or_else(String::new, |name| name.0.to_string())
+}
+
+fn bodies(world: &mut World) -> Vec<(Entity, DVec3, DVec3)> {
+    let mut bodies = world
+        .query_filtered::<(Entity, &Position, &Velocity), (With<StateIndex>, Without<TetherNode>)>(
+        );
+    bodies
+        .iter(world)
+        .map(|(entity, position, velocity)| (entity, position.0, velocity.0))
+        .collect()
+}
+
+fn tethers(world: &mut World) -> Vec<(Entity, DVec3)> {
+    let found: Vec<(Entity, TetherParts)> = world
+        .query::<(Entity, &TetherParts)>()
+        .iter(world)
+        .map(|(tether, parts)| (tether, parts.clone()))
+        .collect();
+    let place = |point: Entity| {
+        let end = world.get::<Attachment>(point)?;
+        let attitude = world.get::<Attitude>(end.carrier)?;
+        Some(world.get::<Position>(end.carrier)?.0 + attitude.0 * end.offset_m)
+    };
+    found
+        .iter()
+        .filter(|(_, parts)| {
+            let first = parts.segments.first();
+            first.is_some_and(|first| world.get::<RigidLink>(*first).is_some())
+        })
+        .filter_map(|(tether, parts)| {
+            let span = place(*parts.points.last()?)? - place(*parts.points.first()?)?;
+            Some((*tether, span))
+        })
+        .collect()
 }

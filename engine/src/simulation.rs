@@ -25,6 +25,7 @@ use crate::evaluation::{
 };
 use crate::integrator_choice::{Choice, choose_integrator, is_linearised};
 use crate::linearisation::Linearisation;
+use crate::link_stable_step;
 use crate::link_start::Start;
 use crate::link_tree;
 use crate::placement;
@@ -107,11 +108,12 @@ impl Simulator {
         let first_order = scales[2 * coordinates..].to_vec();
         let mut linearisation =
             Linearisation::new(&mut world, linearise, first_order, topology, solver);
-        let stable_step = if has_links(scene, formulation) {
-            stable_step::find_of_links(&mut world, &mut linearisation, &mut *state)
-        } else {
-            stable_step::find(&mut world)
-        };
+        let mut stable_step = stable_step::find(&mut world);
+        if has_links(scene, formulation) {
+            let springs = scene.run.elastic_links.then_some(&stable_step);
+            stable_step =
+                link_stable_step::find(&mut world, &mut linearisation, &mut *state, springs);
+        }
         let implicit = Implicit {
             linearisation,
             energy: world.register_system(mechanical_energy),

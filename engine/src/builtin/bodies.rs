@@ -10,7 +10,7 @@ use aerobot_components::state::{
 };
 use aerobot_components::tether::Tether;
 use aerobot_systems::dynamics::accumulators::{clear_accumulators, clear_derivatives};
-use aerobot_systems::dynamics::anchors::move_anchors;
+use aerobot_systems::dynamics::anchors::{move_anchors, on_path};
 use aerobot_systems::dynamics::rigid_body::{CarriedMass, accelerate_bodies};
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::forces::weight::weight;
@@ -143,7 +143,7 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
         }
         let (position, attitude) = match (fixed, moving, entity.get::<Pose>()) {
             (Some(fixed), _, pose) => held_at(entity, fixed, pose),
-            (None, Some(moving), _) => (moving.position_m, DQuat::IDENTITY),
+            (None, Some(moving), _) => (on_path(moving, 0.0).0, DQuat::IDENTITY),
             (None, None, Some(pose)) => (pose.position_m, pose.attitude.quaternion()),
             (None, None, None) => Default::default(),
         };

@@ -62,8 +62,12 @@ fn check_loops(scene: &Scene, report: &mut FieldReport) {
     if scene.run.formulation != Formulation::Denoc {
         return;
     }
-    let mut joined: BTreeMap<&str, Vec<(&str, &str)>> = BTreeMap::new();
+    let mut joined = Joined::new();
     for (entity, tether) in scene.with::<Tether>() {
+        if tether.from.0 == tether.to.0 {
+            // Refused by itself.
+            continue;
+        }
         let from = corner(scene, &tether.from.0);
         let to = corner(scene, &tether.to.0);
         if let Some(mut names) = path_between(&joined, from, to) {
@@ -72,10 +76,12 @@ fn check_loops(scene: &Scene, report: &mut FieldReport) {
                 [one] => format!("the tether `{one}` closes a loop by itself"),
                 _ => format!("the tethers `{}` close a loop", names.join("`, `")),
             };
-            let through = if passes_anchors(scene, &names) {
-                " through the anchors that hold them"
-            } else {
+            let through = if !passes_anchors(scene, &names) {
                 ""
+            } else if names.len() == 1 {
+                " through its two anchors"
+            } else {
+                " through the anchors that hold them"
             };
             report.add(
                 "run.formulation",
@@ -84,12 +90,21 @@ fn check_loops(scene: &Scene, report: &mut FieldReport) {
             );
             return;
         }
-        joined.entry(from).or_default().push((to, &entity.name));
-        joined.entry(to).or_default().push((from, &entity.name));
+        join(scene, &mut joined, &entity.name, tether);
     }
 }
 
-/// Whether a loop is closed by anchors, which do not move against one another.
+/// What each corner is joined to, and by which tether.
+type Joined<'a> = BTreeMap<&'a str, Vec<(&'a str, &'a str)>>;
+
+fn join<'a>(scene: &Scene, joined: &mut Joined<'a>, name: &'a str, tether: &'a Tether) {
+    let from = corner(scene, &tether.from.0);
+    let to = corner(scene, &tether.to.0);
+    joined.entry(from).or_default().push((to, name));
+    joined.entry(to).or_default().push((from, name));
+}
+
+/// Whether a loop is closed by anchors, whose paths are prescribed and which count as one.
 fn passes_anchors(scene: &Scene, tethers: &[&str]) -> bool {
     let of = |name: &&str| scene.entity(name)?.get::<Tether>();
     let ends = tethers.iter().filter_map(of);
@@ -101,11 +116,7 @@ fn passes_anchors(scene: &Scene, tethers: &[&str]) -> bool {
 }
 
 /// The tethers by which one corner is reached from another, if it is.
-fn path_between<'a>(
-    joined: &BTreeMap<&'a str, Vec<(&'a str, &'a str)>>,
-    from: &'a str,
-    to: &'a str,
-) -> Option<Vec<&'a str>> {
+fn path_between<'a>(joined: &Joined<'a>, from: &'a str, to: &'a str) -> Option<Vec<&'a str>> {
     let mut reached: BTreeMap<&str, Option<(&str, &str)>> = BTreeMap::from([(from, None)]);
     let mut waiting = VecDeque::from([from]);
     while let Some(here) = waiting.pop_front() {
@@ -151,18 +162,9 @@ fn check_base(scene: &Scene, report: &mut FieldReport) {
         );
         return;
     }
-    let mut joined: BTreeMap<&str, Vec<(&str, &str)>> = BTreeMap::new();
+    let mut joined = Joined::new();
     for (tether_entity, tether) in scene.with::<Tether>() {
-        let from = corner(scene, &tether.from.0);
-        let to = corner(scene, &tether.to.0);
-        joined
-            .entry(from)
-            .or_default()
-            .push((to, &tether_entity.name));
-        joined
-            .entry(to)
-            .or_default()
-            .push((from, &tether_entity.name));
+        join(scene, &mut joined, &tether_entity.name, tether);
     }
     if path_between(&joined, name, "").is_some() {
         report.add(

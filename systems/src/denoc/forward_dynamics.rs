@@ -67,6 +67,8 @@ pub struct ForwardDynamics {
     bodies: Vec<ArticulatedBody>,
     body_biases: Vec<BodyBias>,
     inertias: Vec<BodyBlock>,
+    /// What links pass on to knots.
+    knots: Vec<Carried>,
     body_loads: Vec<Twist>,
     ends: Vec<[LimbEnd; 2]>,
 }
@@ -89,9 +91,12 @@ impl LimbEnd {
     }
 }
 
-/// A system that cannot be moved: what is carried somewhere has no mass.
+/// A system that cannot be moved: somewhere there is no mass, or too little beside what it carries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("a body without mass cannot be accelerated")]
+#[error(
+    "something between links has no mass that would count beside what it carries: make it heavier, or a \
+     node of the tether"
+)]
 pub struct Massless;
 
 impl ForwardDynamics {
@@ -109,6 +114,7 @@ impl ForwardDynamics {
             bodies: vec![ArticulatedBody::default(); bodies],
             body_biases: vec![BodyBias::default(); bodies],
             inertias: vec![BodyBlock::ZERO; bodies],
+            knots: vec![Carried::default(); bodies],
             body_loads: vec![Twist::default(); bodies],
             ends: vec![[end; 2]; tree.limbs.len()],
         }
@@ -164,10 +170,14 @@ impl ForwardDynamics {
         let child = limb.child;
         let turns = loads.bodies[child].turns;
         let (body, inertia) = ArticulatedBody::new(&self.inertias[child], distal.place, turns);
-        let bias = body.inward(negated(self.body_loads[child]), distal.centripetal);
+        let bias = body.inward(-self.body_loads[child], distal.centripetal);
         self.bodies[child] = body;
         self.body_biases[child] = bias;
-        let (mut carried, mut force) = (Carried::from(inertia), bias.passed_on);
+        let mut carried = Carried::from(inertia);
+        if tree.knots[child] {
+            carried = self.knots[child].plus(inertia);
+        }
+        let mut force = bias.passed_on;
         let spans = &states.span_m[limb.links.clone()];
         let rates = &states.rate_m_s[limb.links.clone()];
         let links = &mut self.links[limb.links.clone()];
@@ -197,10 +207,14 @@ impl ForwardDynamics {
         }
         if let Some(parent) = limb.parent {
             let place = proximal.place;
-            let carried = carried.total();
-            let block = BodyBlock::between(&place, carried.into(), &place);
-            self.inertias[parent].add(&block, 1.0);
-            let push = place.load(carried.times(proximal.centripetal) + force);
+            let total = carried.total();
+            if tree.knots[parent] {
+                self.knots[parent] = carried;
+            } else {
+                let block = BodyBlock::between(&place, total.into(), &place);
+                self.inertias[parent].add(&block, 1.0);
+            }
+            let push = place.load(total.times(proximal.centripetal) + force);
             self.body_loads[parent].linear -= push.linear;
             self.body_loads[parent].angular -= push.angular;
         }
@@ -210,7 +224,7 @@ impl ForwardDynamics {
     fn solve_base(&mut self, base: usize, loads: &Loads) -> Option<Twist> {
         let turns = loads.bodies[base].turns;
         let (body, inertia) = ArticulatedBody::new(&self.inertias[base], CENTRE, turns);
-        let bias = body.inward(negated(self.body_loads[base]), DVec3::ZERO);
+        let bias = body.inward(-self.body_loads[base], DVec3::ZERO);
         body.free(&bias, &inertia)
     }
 
@@ -240,13 +254,6 @@ impl ForwardDynamics {
         }
         let child = limb.child;
         out.bodies[child] = self.bodies[child].outward(&self.body_biases[child], at);
-    }
-}
-
-fn negated(load: Twist) -> Twist {
-    Twist {
-        linear: -load.linear,
-        angular: -load.angular,
     }
 }
 

@@ -16,7 +16,8 @@ use glam::DVec3;
 
 use super::articulated_link::Stretch;
 
-/// Turned further than this part of its length, a link is too close to the edge of its chart.
+/// Square of the part of its length by which a link may stand across e_0 (a turn of 84 degrees): beyond, it
+/// is too close to the edge of its chart.
 const EDGE: f64 = 0.99;
 
 /// The chart of one link.

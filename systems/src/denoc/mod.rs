@@ -37,6 +37,7 @@
 pub mod articulated_body;
 pub mod articulated_link;
 pub mod forward_dynamics;
+pub mod impulse;
 pub mod inverse_dynamics;
 pub mod joint_coordinates;
 pub mod kinematics;

@@ -48,6 +48,8 @@ pub struct LinkStages {
     /// Of bases: what they would pass on.
     at_base: Vec<Symmetric3>,
     blocks: Vec<BodyBlock>,
+    /// What links pass on to knots.
+    knots: Vec<Carried>,
     biases: Vec<LinkBias>,
     body_biases: Vec<BodyBias>,
     /// Force that a link's stage puts on its distal end, and takes from its proximal one.
@@ -73,6 +75,7 @@ impl LinkStages {
             bodies: vec![ArticulatedBody::default(); bodies],
             at_base: vec![Symmetric3::default(); bodies],
             blocks: vec![BodyBlock::ZERO; bodies],
+            knots: vec![Carried::default(); bodies],
             biases: vec![LinkBias::default(); links],
             body_biases: vec![BodyBias::default(); bodies],
             flows: vec![DVec3::ZERO; links],
@@ -102,6 +105,9 @@ impl LinkStages {
         let (body, inertia) = ArticulatedBody::new(&self.blocks[child], distal, turns);
         self.bodies[child] = body;
         let mut carried = Carried::from(inertia);
+        if self.tree.knots[child] {
+            carried = self.knots[child].plus(inertia);
+        }
         for k in (0..limb.links.len()).rev() {
             let segment = &derivatives.segments[limb.segment(k)];
             let all = g * g * segment.geometric_n_m;
@@ -144,9 +150,13 @@ impl LinkStages {
                 );
             }
         }
-        if let Some(parent) = limb.parent {
-            let block = BodyBlock::between(&proximal, carried.total().into(), &proximal);
-            self.blocks[parent].add(&block, 1.0);
+        match limb.parent {
+            Some(parent) if self.tree.knots[parent] => self.knots[parent] = carried,
+            Some(parent) => {
+                let block = BodyBlock::between(&proximal, carried.total().into(), &proximal);
+                self.blocks[parent].add(&block, 1.0);
+            }
+            None => {}
         }
         Ok(())
     }
@@ -206,7 +216,7 @@ impl LinkStages {
         for limb in self.tree.limbs.iter().rev() {
             let (proximal, _) = places(limb, derivatives);
             let child = limb.child;
-            let bias = self.bodies[child].inward(negated(self.body_loads[child]), DVec3::ZERO);
+            let bias = self.bodies[child].inward(-self.body_loads[child], DVec3::ZERO);
             self.body_biases[child] = bias;
             let mut force = bias.passed_on;
             for (k, link) in limb.links.clone().enumerate().rev() {
@@ -235,7 +245,7 @@ impl LinkStages {
             x.write_to_slice(&mut r_x[at..]);
         };
         for &base in &self.tree.bases {
-            let bias = self.bodies[base].inward(negated(self.body_loads[base]), DVec3::ZERO);
+            let bias = self.bodies[base].inward(-self.body_loads[base], DVec3::ZERO);
             let motion = self.bodies[base].free(&bias, &self.at_base[base]);
             self.motions[base] = motion.unwrap_or_default();
             let (displacement, rotation) = self.places.bodies[base];
@@ -375,13 +385,6 @@ fn hung(at: DVec3, place: &Place, rotation: Option<usize>, r: &[f64]) -> Twist {
     Twist {
         linear: at - place.turn * angular,
         angular,
-    }
-}
-
-fn negated(load: Twist) -> Twist {
-    Twist {
-        linear: -load.linear,
-        angular: -load.angular,
     }
 }
 

@@ -86,6 +86,9 @@ pub struct KinematicTree {
     pub bases: Vec<usize>,
     /// The limb that carries each body.
     pub carried_by: Vec<Option<usize>>,
+    /// Of each body, whether it is a point between two limbs: it passes on what it carries as a joint between
+    /// links does.
+    pub knots: Vec<bool>,
     /// Number of links.
     pub links: usize,
 }
@@ -136,6 +139,11 @@ impl KinematicTree {
         }
         let mut tree = growth.tree;
         tree.kinds = tree.limbs.iter().map(|limb| kinds[limb.line]).collect();
+        let is_knot = |body: usize| {
+            let carries = tree.limbs.iter().filter(|limb| limb.parent == Some(body));
+            !topology.bodies[body].turns && tree.carried_by[body].is_some() && carries.count() == 1
+        };
+        tree.knots = (0..topology.bodies.len()).map(is_knot).collect();
         Ok(tree)
     }
 }

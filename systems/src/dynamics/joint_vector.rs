@@ -4,110 +4,51 @@
 //! the rotation vector of the local chart), another body the rotation vector alone, a point none, a link
 //! three ([`crate::denoc::joint_coordinates`]). Where everything else is follows from there, before any
 //! force is asked for.
+//!
+//! Read from components that the joints do not allow (a scene whose poses stretch a tether, a velocity that
+//! a plugin has set), links keep their directions, what nothing holds keeps its centre of mass, and momentum
+//! is conserved ([`crate::denoc::impulse`]).
+//!
+//! [`Origin`]: aerobot_components::state::Origin
 
-use aerobot_components::body::Moving;
-use aerobot_components::state::{
-    AngularVelocity, Attitude, ChartAttitude, Origin, Position, Velocity,
-};
-use aerobot_components::tether::{TetherNode, TetherPoint};
-use bevy_ecs::change_detection::DetectChangesMut;
 use bevy_ecs::entity::Entity;
-use bevy_ecs::query::{QueryState, With, Without};
 use bevy_ecs::world::World;
 use glam::DVec3;
 
-use super::anchors::on_path;
 use super::first_order::FirstOrderStates;
+use super::joint_layout::{BodyPlace, JointLayout};
 use super::link_mechanism::LinkMechanism;
 use super::rotation_chart::{exponential, rotation_rate};
 use super::state_space::{Layout, StateSpace};
-use crate::clock::Clock;
+use super::tree_components::TreeComponents;
+use crate::denoc::articulated_link::Stretch;
+use crate::denoc::impulse::allowed_motion;
 use crate::denoc::joint_coordinates::LinkChart;
-use crate::denoc::kinematics::{BodyState, LinkStates, PointState, sweep_outward};
+use crate::denoc::kinematics::{LinkStates, PointState, sweep_outward};
 use crate::denoc::stage_system::JointPlaces;
 use crate::denoc::tree::LinkKind;
 use crate::fault::Fault;
-use crate::linearised_motion::topology::BodyIndex;
 
-type Bodies = (
-    &'static BodyIndex,
-    &'static Origin,
-    &'static mut ChartAttitude,
-    &'static mut Position,
-    &'static mut Attitude,
-    &'static mut Velocity,
-    &'static mut AngularVelocity,
-);
-type Nodes = (
-    &'static TetherPoint,
-    &'static mut Position,
-    &'static mut Velocity,
-);
-type Anchors = (
-    Option<&'static Moving>,
-    &'static Position,
-    &'static Velocity,
-    &'static Attitude,
-    &'static AngularVelocity,
-);
-
-/// Where in the state the coordinates of a body begin.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum BodyPlace {
-    /// Of a base: displacement, then rotation.
-    Base(usize),
-    /// Of a carried body that turns: rotation.
-    Turning(usize),
-    /// A carried point has none.
-    Point,
-}
-
-impl BodyPlace {
-    fn rotation(self) -> Option<usize> {
-        match self {
-            Self::Base(at) => Some(at + 3),
-            Self::Turning(at) => Some(at),
-            Self::Point => None,
-        }
-    }
-}
+/// Bodies whose links would move them by less than this, m, and rates along links below this, m/s, are
+/// round-off.
+const ROUND_OFF: f64 = 1e-9;
 
 /// Moves joint coordinates between a flat vector and the components of a world.
 pub struct JointVector {
-    layout: Layout,
-    places: Vec<BodyPlace>,
-    first_link: usize,
+    places: JointLayout,
     charts: Vec<LinkChart>,
     kinds: Vec<LinkKind>,
     links: LinkStates,
-    bodies: Vec<BodyState>,
-    anchors: Vec<BodyState>,
-    points: Vec<PointState>,
-    body_query: QueryState<Bodies, Without<TetherNode>>,
-    node_query: QueryState<Nodes, With<TetherNode>>,
-    anchor_query: QueryState<Anchors>,
+    components: TreeComponents,
     first_order: FirstOrderStates,
+    first_order_count: usize,
 }
 
 impl JointVector {
     /// For the tree in the [`LinkMechanism`] of `world`, with this number of first-order states.
-    pub fn new(world: &mut World, first_order: usize) -> Self {
+    pub fn new(world: &mut World, first_order_count: usize) -> Self {
         let mechanism = world.resource::<LinkMechanism>();
-        let (tree, entities) = (&mechanism.tree, &mechanism.entities);
-        let mut coordinates = 0;
-        let mut places = Vec::new();
-        for (carried_by, turns) in tree.carried_by.iter().zip(&entities.turns) {
-            places.push(match (carried_by, turns) {
-                (None, _) => BodyPlace::Base(coordinates),
-                (Some(_), true) => BodyPlace::Turning(coordinates),
-                (Some(_), false) => BodyPlace::Point,
-            });
-            coordinates += match (carried_by, turns) {
-                (None, _) => 6,
-                (Some(_), true) => 3,
-                (Some(_), false) => 0,
-            };
-        }
+        let tree = &mechanism.tree;
         let kinds: Vec<LinkKind> = tree
             .limbs
             .iter()
@@ -116,168 +57,185 @@ impl JointVector {
             .collect();
         let zeros = vec![DVec3::ZERO; tree.links];
         Self {
-            layout: Layout {
-                coordinates: coordinates + 3 * tree.links,
-                first_order,
-            },
-            places,
-            first_link: coordinates,
+            places: JointLayout::new(mechanism),
             charts: vec![LinkChart::default(); tree.links],
             kinds,
             links: LinkStates {
                 span_m: zeros.clone(),
                 rate_m_s: zeros,
             },
-            bodies: vec![BodyState::default(); entities.bodies.len()],
-            anchors: vec![BodyState::default(); tree.limbs.len()],
-            points: vec![PointState::default(); entities.points],
-            body_query: world.query_filtered(),
-            node_query: world.query_filtered(),
-            anchor_query: world.query(),
+            components: TreeComponents::new(world),
             first_order: FirstOrderStates::new(world),
+            first_order_count,
         }
     }
 
     /// Where in the state the joint coordinates stand.
     #[must_use]
     pub fn places(&self) -> JointPlaces {
-        let displacement = |place: &BodyPlace| match place {
-            BodyPlace::Base(at) => Some(*at),
-            BodyPlace::Turning(_) | BodyPlace::Point => None,
-        };
-        let bodies = self.places.iter();
-        JointPlaces {
-            bodies: bodies
-                .map(|place| (displacement(place), place.rotation()))
-                .collect(),
-            first_link: self.first_link,
-            coordinates: self.layout.coordinates,
-        }
+        self.places.places()
     }
 
-    /// Positions and velocities of tether points and bodies as the components have them.
-    fn read_components(&mut self, world: &mut World) {
-        for (point, position, velocity) in self.node_query.iter(world) {
-            self.points[point.index] = PointState {
-                position_m: position.0,
-                velocity_m_s: velocity.0,
-            };
+    /// Takes the links as the points have them for the centres of the charts, with their rates; whether
+    /// some rate is one that a rigid link cannot have.
+    fn take_links(&mut self, world: &World) -> bool {
+        let tree = &world.resource::<LinkMechanism>().tree;
+        let mut is_stretching = false;
+        for (limb, kind) in tree.limbs.iter().zip(&tree.kinds) {
+            let mut before = self.components.points[limb.proximal_point()];
+            for (k, link) in limb.links.clone().enumerate() {
+                let here = self.components.points[limb.distal_point(k)];
+                let span = here.position_m - before.position_m;
+                let given = here.velocity_m_s - before.velocity_m_s;
+                let (chart, rate) = LinkChart::around(span, given, kind.length_m, kind.stretch);
+                is_stretching |= rate.distance(given) > ROUND_OFF;
+                self.charts[link] = chart;
+                self.links.span_m[link] = chart.centre_m;
+                self.links.rate_m_s[link] = rate;
+                before = here;
+            }
         }
-        for (index, _, _, position, attitude, velocity, rate) in self.body_query.iter(world) {
-            self.bodies[index.0] = BodyState {
-                centre: PointState {
-                    position_m: position.0,
-                    velocity_m_s: velocity.0,
-                },
-                attitude: attitude.0,
-                rate_rad_s: rate.0,
-            };
-        }
-        self.read_anchors(world);
+        is_stretching
+    }
+
+    /// Moves bases so that what is free keeps its centre of mass where links put bodies elsewhere than they
+    /// stood; whether they do.
+    fn keep_centres_of_mass(&mut self, world: &World) -> bool {
         let mechanism = world.resource::<LinkMechanism>();
-        for (index, limb) in mechanism.tree.limbs.iter().enumerate() {
-            let offsets = mechanism.entities.offsets[index];
-            let parent = limb
-                .parent
-                .map_or(&self.anchors[index], |body| &self.bodies[body]);
-            self.points[limb.proximal_point()] = parent.place(offsets.proximal_m);
-            let last = limb.distal_point(limb.links.len() - 1);
-            self.points[last] = self.bodies[limb.child].place(offsets.distal_m);
+        let given = self.components.bodies.clone();
+        let given_points = self.components.points.clone();
+        self.sweep(mechanism);
+        let mut base_of: Vec<Option<usize>> = vec![None; given.len()];
+        for &base in &mechanism.tree.bases {
+            base_of[base] = Some(base);
         }
+        for limb in &mechanism.tree.limbs {
+            base_of[limb.child] = limb.parent.and_then(|parent| base_of[parent]);
+        }
+        let mut moments = vec![(0.0, DVec3::ZERO); given.len()];
+        let mut is_moved = false;
+        let mut weigh = |base: Option<usize>, mass_kg: f64, given: PointState, now: PointState| {
+            let shift = given.position_m - now.position_m;
+            is_moved |= shift.length() > ROUND_OFF;
+            if let Some(base) = base {
+                moments[base].0 += mass_kg;
+                moments[base].1 += mass_kg * shift;
+            }
+        };
+        for (body, now) in self.components.bodies.iter().enumerate() {
+            let mass_kg = mechanism.loads.bodies[body].mass.linear.x_axis.x;
+            weigh(base_of[body], mass_kg, given[body].centre, now.centre);
+        }
+        for (limb, kind) in mechanism.tree.limbs.iter().zip(&mechanism.tree.kinds) {
+            for joint in (1..limb.links.len()).map(|k| limb.distal_point(k - 1)) {
+                let now = self.components.points[joint];
+                weigh(
+                    base_of[limb.child],
+                    kind.joint_mass_kg,
+                    given_points[joint],
+                    now,
+                );
+            }
+        }
+        for &base in mechanism.tree.bases.iter().filter(|_| is_moved) {
+            let (mass_kg, moment) = moments[base];
+            self.components.bodies[base].centre.position_m += moment / mass_kg;
+        }
+        is_moved
     }
 
-    /// Where the anchors are at the time of the evaluation that is to come.
-    fn read_anchors(&mut self, world: &World) {
-        let time_s = world.resource::<Clock>().time_s;
-        let anchors = &world.resource::<LinkMechanism>().entities.anchors;
-        for (state, anchor) in self.anchors.iter_mut().zip(anchors) {
-            let found = anchor.map(|anchor| self.anchor_query.get_manual(world, anchor));
-            if let Some(Ok((path, position, velocity, attitude, rate))) = found {
-                let (position_m, velocity_m_s) = path.map_or((position.0, velocity.0), |path| {
-                    let (position_m, velocity_m_s, _) = on_path(path, time_s);
-                    (position_m, velocity_m_s)
-                });
-                *state = BodyState {
-                    centre: PointState {
-                        position_m,
-                        velocity_m_s,
-                    },
-                    attitude: attitude.0,
-                    rate_rad_s: rate.0,
-                };
+    /// Gives bodies and links the motion that impulses of the joints make of theirs.
+    fn take_impulses(&mut self, world: &World) {
+        let mechanism = world.resource::<LinkMechanism>();
+        let mut found = mechanism.accelerations.clone();
+        let allowed = allowed_motion(
+            &mechanism.tree,
+            &self.links.span_m,
+            (&self.components.points, &self.components.bodies),
+            &mechanism.entities.offsets,
+            &mechanism.loads,
+            &mut found,
+        );
+        // What has no mass has no momentum either, and is refused when it is to be accelerated.
+        if allowed.is_ok() {
+            self.links.rate_m_s.copy_from_slice(&found.span_m_s2);
+            for (body, motion) in self.components.bodies.iter_mut().zip(&found.bodies) {
+                body.centre.velocity_m_s = motion.linear;
+                body.rate_rad_s = motion.angular;
             }
         }
     }
 
-    /// Writes nodes and bodies, and hands the state to the mechanism.
-    fn write_components(&mut self, world: &mut World) {
-        for (point, mut position, mut velocity) in self.node_query.iter_mut(world) {
-            let state = &self.points[point.index];
-            position.bypass_change_detection().0 = state.position_m;
-            velocity.bypass_change_detection().0 = state.velocity_m_s;
-        }
-        for (index, _, _, mut position, mut attitude, mut velocity, mut rate) in
-            self.body_query.iter_mut(world)
-        {
-            let state = &self.bodies[index.0];
-            position.0 = state.centre.position_m;
-            attitude.0 = state.attitude;
-            velocity.0 = state.centre.velocity_m_s;
-            rate.0 = state.rate_rad_s;
-        }
-        let mut mechanism = world.resource_mut::<LinkMechanism>();
-        mechanism.links.clone_from(&self.links);
-        mechanism.bodies.copy_from_slice(&self.bodies);
+    /// From bases and links to all points and bodies.
+    fn sweep(&mut self, mechanism: &LinkMechanism) {
+        sweep_outward(
+            &mechanism.tree,
+            &self.links,
+            &mechanism.entities.offsets,
+            &self.components.anchors,
+            &mut self.components.bodies,
+            &mut self.components.points,
+        );
     }
 }
 
 impl StateSpace for JointVector {
     fn layout(&self) -> Layout {
-        self.layout
+        Layout {
+            coordinates: self.places.coordinates,
+            first_order: self.first_order_count,
+        }
     }
 
     fn gather(&mut self, world: &mut World, state: &mut [f64]) {
-        self.read_components(world);
-        let n = self.layout.coordinates;
-        state.fill(0.0);
-        for (index, origin, mut chart, position, attitude, velocity, rate) in
-            self.body_query.iter_mut(world)
-        {
-            let place = self.places[index.0];
-            chart.0 = attitude.0;
-            if let BodyPlace::Base(at) = place {
-                (position.0 - origin.0).write_to_slice(&mut state[at..]);
-                velocity.0.write_to_slice(&mut state[n + at..]);
-            }
-            if let Some(at) = place.rotation() {
-                rate.0.write_to_slice(&mut state[n + at..]);
+        self.components.read(world);
+        self.components.read_masses(world);
+        let is_rigid = self.kinds.iter().any(|kind| kind.stretch == Stretch::Rigid);
+        let is_stretching = self.take_links(world);
+        if is_rigid {
+            let (points, bodies) = (
+                self.components.points.clone(),
+                self.components.bodies.clone(),
+            );
+            let is_moved = self.keep_centres_of_mass(world);
+            if is_stretching || is_moved {
+                // Momenta are those of the motion that was read.
+                self.components.points = points;
+                for (body, read) in self.components.bodies.iter_mut().zip(bodies) {
+                    body.centre.velocity_m_s = read.centre.velocity_m_s;
+                }
+                self.take_impulses(world);
             }
         }
-        let tree = &world.resource::<LinkMechanism>().tree;
-        for (limb, kind) in tree.limbs.iter().zip(&tree.kinds) {
-            let mut before = self.points[limb.proximal_point()];
-            for (k, link) in limb.links.clone().enumerate() {
-                let here = self.points[limb.distal_point(k)];
-                let (chart, rate) = LinkChart::around(
-                    here.position_m - before.position_m,
-                    here.velocity_m_s - before.velocity_m_s,
-                    kind.length_m,
-                    kind.stretch,
-                );
-                self.charts[link] = chart;
-                rate.write_to_slice(&mut state[n + self.first_link + 3 * link..]);
-                before = here;
+        let n = self.places.coordinates;
+        state.fill(0.0);
+        for (index, origin, mut chart, ..) in self.components.body_query.iter_mut(world) {
+            let body = &self.components.bodies[index.0];
+            let place = self.places.bodies[index.0];
+            chart.0 = body.attitude;
+            if let BodyPlace::Base(at) = place {
+                (body.centre.position_m - origin.0).write_to_slice(&mut state[at..]);
+                body.centre
+                    .velocity_m_s
+                    .write_to_slice(&mut state[n + at..]);
             }
+            if let Some(at) = place.rotation() {
+                body.rate_rad_s.write_to_slice(&mut state[n + at..]);
+            }
+        }
+        let (rates, _) = state[n + self.places.first_link..2 * n].as_chunks_mut::<3>();
+        for (out, rate) in rates.iter_mut().zip(&self.links.rate_m_s) {
+            *out = rate.to_array();
         }
         self.first_order.gather(world, &mut state[2 * n..]);
     }
 
     fn scatter(&mut self, world: &mut World, state: &[f64]) -> Result<(), Fault> {
-        let (coordinates, rest) = state.split_at(self.layout.coordinates);
-        let (velocities, first_order) = rest.split_at(self.layout.coordinates);
-        for (index, origin, chart, ..) in self.body_query.iter(world) {
-            let place = self.places[index.0];
-            let body = &mut self.bodies[index.0];
+        let (coordinates, rest) = state.split_at(self.places.coordinates);
+        let (velocities, first_order) = rest.split_at(self.places.coordinates);
+        for (index, origin, chart, ..) in self.components.body_query.iter(world) {
+            let place = self.places.bodies[index.0];
+            let body = &mut self.components.bodies[index.0];
             if let BodyPlace::Base(at) = place {
                 body.centre = PointState {
                     position_m: origin.0 + DVec3::from_slice(&coordinates[at..]),
@@ -290,8 +248,8 @@ impl StateSpace for JointVector {
                 body.rate_rad_s = DVec3::from_slice(&velocities[at..]);
             }
         }
-        let (q, _) = coordinates[self.first_link..].as_chunks::<3>();
-        let (q_rate, _) = velocities[self.first_link..].as_chunks::<3>();
+        let (q, _) = coordinates[self.places.first_link..].as_chunks::<3>();
+        let (q_rate, _) = velocities[self.places.first_link..].as_chunks::<3>();
         let joints = q
             .iter()
             .zip(q_rate)
@@ -308,29 +266,24 @@ impl StateSpace for JointVector {
         if let Some(link) = beyond {
             return Err(Fault {
                 entity: Some(world.resource::<LinkMechanism>().entities.segments[link]),
-                message: "a link turns by more than 80 degrees in one step".to_owned(),
+                message:
+                    "a rigid link turns by a right angle in one step: choose a shorter step, or \
+                          `Auto()`"
+                        .to_owned(),
             });
         }
-        self.read_anchors(world);
-        let mechanism = world.resource::<LinkMechanism>();
-        sweep_outward(
-            &mechanism.tree,
-            &self.links,
-            &mechanism.entities.offsets,
-            &self.anchors,
-            &mut self.bodies,
-            &mut self.points,
-        );
-        self.write_components(world);
+        self.components.read_anchors(world);
+        self.sweep(world.resource::<LinkMechanism>());
+        self.components.write(world, &self.links);
         self.first_order.scatter(world, first_order);
         Ok(())
     }
 
     fn gather_rates(&mut self, world: &mut World, state: &[f64], rates: &mut [f64]) {
-        let n = self.layout.coordinates;
+        let n = self.places.coordinates;
         rates[..n].copy_from_slice(&state[n..2 * n]);
         let found = &world.resource::<LinkMechanism>().accelerations;
-        for (place, motion) in self.places.iter().zip(&found.bodies) {
+        for (place, motion) in self.places.bodies.iter().zip(&found.bodies) {
             if let BodyPlace::Base(at) = *place {
                 motion.linear.write_to_slice(&mut rates[n + at..]);
             }
@@ -341,7 +294,7 @@ impl StateSpace for JointVector {
                 motion.angular.write_to_slice(&mut rates[n + at..]);
             }
         }
-        let (out, _) = rates[n + self.first_link..2 * n].as_chunks_mut::<3>();
+        let (out, _) = rates[n + self.places.first_link..2 * n].as_chunks_mut::<3>();
         let links = self.charts.iter().zip(&self.kinds).zip(&found.span_m_s2);
         for (out, ((chart, kind), span)) in out.iter_mut().zip(links) {
             *out = chart
@@ -352,9 +305,11 @@ impl StateSpace for JointVector {
     }
 
     fn recentre(&mut self, world: &mut World, state: &mut [f64], rates: &mut [f64]) {
-        let n = self.layout.coordinates;
-        for (index, _, mut chart, _, mut attitude, _, _) in self.body_query.iter_mut(world) {
-            let Some(at) = self.places[index.0].rotation() else {
+        let n = self.places.coordinates;
+        for (index, _, mut chart, _, mut attitude, _, _) in
+            self.components.body_query.iter_mut(world)
+        {
+            let Some(at) = self.places.bodies[index.0].rotation() else {
                 continue;
             };
             let rotation = &mut state[at..at + 3];
@@ -367,7 +322,7 @@ impl StateSpace for JointVector {
         let spans = self.links.span_m.iter().zip(&self.links.rate_m_s);
         let links = self.charts.iter_mut().zip(&self.kinds).zip(spans);
         for (link, (((chart, kind), (span, rate)), found)) in links.zip(found).enumerate() {
-            let at = self.first_link + 3 * link;
+            let at = self.places.first_link + 3 * link;
             let (centre, rate) = LinkChart::around(*span, *rate, kind.length_m, kind.stretch);
             let acceleration = centre.acceleration(*found, kind.length_m, kind.stretch);
             *chart = centre;
@@ -379,19 +334,19 @@ impl StateSpace for JointVector {
     }
 
     fn error_scales(&mut self, world: &mut World) -> Vec<f64> {
-        let mut scales = vec![1.0; self.layout.len()];
-        let first = 2 * self.layout.coordinates;
+        let mut scales = vec![1.0; self.layout().len()];
+        let first = 2 * self.places.coordinates;
         self.first_order.error_scales(world, &mut scales[first..]);
         scales
     }
 
     fn owner(&mut self, world: &mut World, place: usize) -> Option<Entity> {
-        let place = place % self.layout.coordinates.max(1);
+        let place = place % self.places.coordinates.max(1);
         let entities = &world.resource::<LinkMechanism>().entities;
-        if place >= self.first_link {
+        if place >= self.places.first_link {
             return entities
                 .segments
-                .get((place - self.first_link) / 3)
+                .get((place - self.places.first_link) / 3)
                 .copied();
         }
         let starts = |at: &BodyPlace| match at {
@@ -400,6 +355,7 @@ impl StateSpace for JointVector {
         };
         let body = self
             .places
+            .bodies
             .iter()
             .rposition(|at| starts(at).is_some_and(|at| at <= place))?;
         Some(entities.bodies[body])

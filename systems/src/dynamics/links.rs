@@ -14,7 +14,7 @@ use aerobot_components::tether::{Attachment, TetherNode, TetherPoint};
 use bevy_ecs::change_detection::DetectChangesMut;
 use bevy_ecs::query::{With, Without};
 use bevy_ecs::system::{Query, Res, ResMut};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::link_mechanism::LinkMechanism;
 use super::rigid_body::CarriedMass;
@@ -24,6 +24,55 @@ use crate::denoc::forward_dynamics::BodyLoad;
 use crate::fault::FaultSlot;
 use crate::linearised_motion::body_block::{BodyBlock, Twist};
 use crate::linearised_motion::topology::BodyIndex;
+
+/// The mass matrix of a body with what it carries: of the acceleration of its centre of mass (inertial frame)
+/// and its angular acceleration (body frame); of a point, in the linear part alone.
+#[must_use]
+pub fn mass_of(
+    own: &Mass,
+    added: &AddedInertia,
+    inertia: Option<&Inertia>,
+    carried: &CarriedMass,
+    attitude: &Attitude,
+) -> BodyBlock {
+    let total = own.0 + added.0 + carried.mass_kg;
+    match inertia {
+        None => BodyBlock {
+            linear: DMat3::from_diagonal(DVec3::splat(total)),
+            ..BodyBlock::ZERO
+        },
+        Some(inertia) => BodyBlock::mass(
+            total,
+            carried.first_moment_kg_m,
+            inertia.0 + carried.inertia_kg_m2,
+            attitude.0,
+        ),
+    }
+}
+
+/// What a body brings into the dynamics, with the terms of its angular velocity taken off its loads.
+fn load_of(
+    mass: BodyBlock,
+    (inertia, carried): (Option<&Inertia>, &CarriedMass),
+    (attitude, rate): (&Attitude, &AngularVelocity),
+    (force, torque): (&Force, &Torque),
+) -> BodyLoad {
+    let mut load = Twist {
+        linear: force.0,
+        angular: DVec3::ZERO,
+    };
+    if inertia.is_some() {
+        let omega = rate.0;
+        let moment = carried.first_moment_kg_m;
+        load.linear -= attitude.0 * omega.cross(omega.cross(moment));
+        load.angular = attitude.0.conjugate() * torque.0 - omega.cross(mass.turn * omega);
+    }
+    BodyLoad {
+        mass,
+        load,
+        turns: inertia.is_some(),
+    }
+}
 
 /// Takes the forces of the evaluation to the tree, and solves for its accelerations and tensions.
 pub fn solve_links(
@@ -43,34 +92,9 @@ pub fn solve_links(
     for (point, force) in &nodes {
         loads.point_n[point.index] = force.0;
     }
-    for (index, mass, (attitude, rate), (force, torque)) in &bodies {
-        let (own, added, inertia, carried) = mass;
-        let total = own.0 + added.0 + carried.mass_kg;
-        loads.bodies[index.0] = match inertia {
-            None => BodyLoad {
-                mass: BodyBlock {
-                    linear: glam::DMat3::from_diagonal(DVec3::splat(total)),
-                    ..BodyBlock::ZERO
-                },
-                load: Twist {
-                    linear: force.0,
-                    angular: DVec3::ZERO,
-                },
-                turns: false,
-            },
-            Some(inertia) => {
-                let (moment, omega) = (carried.first_moment_kg_m, rate.0);
-                let inertia = inertia.0 + carried.inertia_kg_m2;
-                BodyLoad {
-                    mass: BodyBlock::mass(total, moment, inertia, attitude.0),
-                    load: Twist {
-                        linear: force.0 - attitude.0 * omega.cross(omega.cross(moment)),
-                        angular: attitude.0.conjugate() * torque.0 - omega.cross(inertia * omega),
-                    },
-                    turns: true,
-                }
-            }
-        };
+    for (index, (own, added, inertia, carried), motion, forces) in &bodies {
+        let mass = mass_of(own, added, inertia, carried, motion.0);
+        loads.bodies[index.0] = load_of(mass, (inertia, carried), motion, forces);
     }
     let held = loads.anchor_m_s2.iter_mut();
     for (acceleration, anchor) in held.zip(&mechanism.entities.anchors) {

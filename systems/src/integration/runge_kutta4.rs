@@ -4,7 +4,9 @@
 //! Between two instants that no step may cross the step is shortened a little so that whole steps
 //! fill the interval.
 
-use super::{Equations, Integrator, StepFailure, Trajectory, check_state, combine};
+use super::{
+    Equations, Integrator, StepFailure, Trajectory, check_state, combine, first_not_finite,
+};
 
 /// Fixed-step RK4.
 #[derive(Debug)]
@@ -66,13 +68,18 @@ impl Integrator for RungeKutta4 {
             &[(sixth, k1), (third, k2), (third, k3), (sixth, k4)],
         );
         check_state(stage)?;
-
+        // A state that cannot be evaluated is not taken.
+        equations
+            .rates(end_s, stage, k2)
+            .map_err(StepFailure::Fault)?;
+        if let Some(index) = first_not_finite(k2) {
+            return Err(StepFailure::NotFinite { index });
+        }
         std::mem::swap(&mut trajectory.state, stage);
+        std::mem::swap(&mut trajectory.rates, k2);
         trajectory.time_s = end_s;
-        trajectory.rates_are_current = false;
         trajectory.cost.steps += 1;
-        trajectory.cost.evaluations += 3;
-        trajectory.refresh(equations)?;
+        trajectory.cost.evaluations += 4;
         equations.accept(&mut trajectory.state, &mut trajectory.rates);
         Ok(())
     }

@@ -15,6 +15,17 @@ pub struct Twist {
     pub angular: DVec3,
 }
 
+impl std::ops::Neg for Twist {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self {
+            linear: -self.linear,
+            angular: -self.angular,
+        }
+    }
+}
+
 /// The cross-product matrix `[v]`: `[v] w = v x w`.
 #[must_use]
 pub fn cross_matrix(v: DVec3) -> DMat3 {

@@ -8,27 +8,15 @@ use crate::denoc::inverse_dynamics::inverse_dynamics;
 use crate::denoc::tree::LinkKind;
 use crate::dynamics::rigid_body::CarriedMass;
 use crate::linearised_motion::topology::{BodySite, End, Line, Topology};
+use crate::nonlinear_solver::test_support::Random;
 
 mod dense;
 
 const GRAVITY: f64 = 8.87;
 const LENGTH_M: f64 = 10.0;
 
-/// Numbers between -1 and 1, the same in every run (Knuth's MMIX generator).
-struct Draws(u64);
-
-impl Draws {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self, size: f64) -> DVec3 {
-        size * DVec3::new(self.next(), self.next(), self.next())
-    }
+fn vector(random: &mut Random, size: f64) -> DVec3 {
+    size * DVec3::new(random.signed(), random.signed(), random.signed())
 }
 
 /// Tethers of rods between bodies, with random poses, rates and forces.
@@ -57,7 +45,7 @@ struct Drawn {
 
 impl Sample {
     fn new(ropes: &[Rope], body_kg: &[f64], drawn: Drawn) -> Self {
-        let mut draws = Draws(drawn.seed);
+        let mut draws = Random::new(drawn.seed);
         let (topology, points) = topology(ropes, body_kg.len());
         let kind = LinkKind {
             length_m: LENGTH_M,
@@ -80,30 +68,32 @@ impl Sample {
         sample
     }
 
-    fn pose(&mut self, spread: f64, draws: &mut Draws) {
+    fn pose(&mut self, spread: f64, draws: &mut Random) {
         for _ in 0..self.tree.links {
-            let direction = (DVec3::NEG_Z + draws.vector(spread)).normalize();
+            let direction = (DVec3::NEG_Z + vector(draws, spread)).normalize();
             self.links.span_m.push(LENGTH_M * direction);
-            self.links.rate_m_s.push(draws.vector(1.0).cross(direction));
+            self.links
+                .rate_m_s
+                .push(vector(draws, 1.0).cross(direction));
         }
         for _ in 0..self.tree.carried_by.len() {
             self.bodies.push(BodyState {
-                attitude: DQuat::from_scaled_axis(draws.vector(1.0)),
-                rate_rad_s: draws.vector(0.5),
+                attitude: DQuat::from_scaled_axis(vector(draws, 1.0)),
+                rate_rad_s: vector(draws, 0.5),
                 ..BodyState::default()
             });
         }
         for _ in 0..self.tree.limbs.len() {
             self.offsets.push(LimbOffsets {
-                proximal_m: draws.vector(0.5),
-                distal_m: draws.vector(0.5),
+                proximal_m: vector(draws, 0.5),
+                distal_m: vector(draws, 0.5),
             });
         }
     }
 
     /// Weights, and besides them forces about half as large in random directions.
-    fn load(&mut self, body_kg: &[f64], rod_kg: f64, draws: &mut Draws) {
-        let mut push = |kg: f64| kg * (GRAVITY * DVec3::NEG_Z + draws.vector(5.0));
+    fn load(&mut self, body_kg: &[f64], rod_kg: f64, draws: &mut Random) {
+        let mut push = |kg: f64| kg * (GRAVITY * DVec3::NEG_Z + vector(draws, 5.0));
         for point in &mut self.loads.point_n {
             *point = push(rod_kg);
             self.weight_n += rod_kg * GRAVITY;
@@ -134,7 +124,26 @@ impl Sample {
             self.weight_n += kg * GRAVITY;
         }
         for acceleration in &mut self.loads.anchor_m_s2 {
-            *acceleration = draws.vector(2.0);
+            *acceleration = vector(draws, 2.0);
+        }
+    }
+
+    /// Makes a body a point of this mass, with all its tethers at its centre.
+    fn be_point(&mut self, body: usize, kg: f64) {
+        self.loads.bodies[body].mass = BodyBlock {
+            linear: DMat3::from_diagonal(DVec3::splat(kg)),
+            ..BodyBlock::ZERO
+        };
+        self.loads.bodies[body].load.angular = DVec3::ZERO;
+        self.loads.bodies[body].turns = false;
+        self.tree.knots[body] = true;
+        for (limb, offsets) in self.tree.limbs.iter().zip(&mut self.offsets) {
+            if limb.parent == Some(body) {
+                offsets.proximal_m = DVec3::ZERO;
+            }
+            if limb.child == body {
+                offsets.distal_m = DVec3::ZERO;
+            }
         }
     }
 
@@ -233,6 +242,25 @@ fn inverse_dynamics_of_forward_dynamics_leaves_no_torque() {
         assert!(light < 1e-13, "{links} links: {light:e}");
         assert!(heavy < 1e-10, "{links} links: {heavy:e}");
     }
+}
+
+/// A knot of a milligram between two chains is no worse than a joint between links.
+#[test]
+fn a_light_knot_carries_a_heavy_tip() {
+    let ropes = [
+        (End::Held, End::OnBody(0), 4),
+        (End::OnBody(0), End::OnBody(1), 4),
+    ];
+    let drawn = Drawn {
+        spread: 0.3,
+        rod_kg: 1e-3,
+        seed: 8,
+    };
+    let mut sample = Sample::new(&ropes, &[1e-6, 1e3], drawn);
+    sample.be_point(0, 1e-6 + 1e-3);
+    let residual = sample.residual();
+    println!("{residual:.1e}");
+    assert!(residual < 1e-9, "{residual:e}");
 }
 
 /// With forces and torques on everything a tree of several limbs closes as a chain does.
