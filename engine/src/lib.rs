@@ -2,6 +2,7 @@
 //! running. The only crate that orders anything; [`schedule`] is its table of contents.
 
 pub mod balloon_sizing;
+mod building;
 pub mod builtin;
 pub mod contents;
 pub mod evaluation;

@@ -1,44 +1,20 @@
 //! A simulation: the world of one scene, built, and the loop that runs it.
 
-use aerobot_components::run::Formulation;
 use aerobot_components::sampling::Sampling;
 use aerobot_systems::clock::Clock;
-use aerobot_systems::denoc::stage_system::LinkStages;
-use aerobot_systems::dynamics::joint_vector::JointVector;
-use aerobot_systems::dynamics::state_space::{Layout, StateSpace};
-use aerobot_systems::dynamics::state_vector::StateVector;
-use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::fault::{Fault, FaultSlot};
-use aerobot_systems::instruments::energy_guard::mechanical_energy;
-use aerobot_systems::integration::{Cost, Equations, StepFailure, Trajectory};
-use aerobot_systems::linearised_motion::shifted_system::ShiftedSystem;
-use aerobot_systems::linearised_motion::stage_solver::StageSolver;
-use aerobot_systems::linearised_motion::topology::Topology;
+use aerobot_systems::integration::{Cost, Equations, StepFailure};
 use bevy_ecs::query::QueryState;
 use bevy_ecs::world::World;
 
-use crate::builtin::channels::find_supports;
 use crate::builtin::recorder::Recorder;
-use crate::builtin::tethers::has_links;
-use crate::evaluation::{
-    Evaluation, Implicit, Integration, IntegrationSlot, WorldEquations, with_integration,
-};
-use crate::integrator_choice::{Choice, choose_integrator, is_linearised};
-use crate::linearisation::Linearisation;
-use crate::link_stable_step;
-use crate::link_start::Start;
-use crate::link_tree;
-use crate::placement;
-use crate::plugin::Simulator;
+use crate::evaluation::{Integration, WorldEquations, with_integration};
 use crate::recording::frame::ResultSink;
 use crate::recording::summary::{Stop, Summary};
-use crate::scene::{Scene, SceneError, SetupError};
-use crate::schedule::{self, EVALUATE, Evaluate, LINEARISE, Linearise, STEP, Step};
+use crate::scene::{Scene, SceneError};
 use crate::sequence::Sequence;
-use crate::stable_step::{self, StableStep};
-use crate::stopping::owner_name;
-use crate::topology;
-use crate::world::{Edges, build_world, lay_out_state};
+use crate::stable_step::StableStep;
+use crate::world::Edges;
 
 /// A built simulation.
 pub struct Simulation {
@@ -59,160 +35,26 @@ pub(crate) struct SceneFacts {
     pub(crate) integrator: String,
 }
 
-impl Simulator {
-    /// Builds the world of a scene and places everything in it.
-    ///
-    /// # Errors
-    /// What cannot be built, rendered: no equilibrium, a step that is not stable, an altitude outside
-    /// the atmosphere, an ambiguity between systems.
-    pub fn build(&self, scene: &Scene) -> Result<Simulation, SceneError> {
-        let mut world = build_world(self, scene).map_err(|error| scene.refuse(error))?;
-        let layout = lay_out_state(&mut world);
-        let formulation = scene.run.formulation;
-        let evaluate = |formulation, world: &mut World| {
-            let schedule = schedule::build(Evaluate, &EVALUATE, self, (scene, formulation), world);
-            Ok::<_, SceneError>(Evaluation {
-                schedule: schedule.map_err(unordered)?,
-            })
-        };
-        let mut evaluation = evaluate(formulation, &mut world)?;
-        let mut statics = match formulation {
-            Formulation::LumpedMass => None,
-            Formulation::Denoc => Some(evaluate(Formulation::LumpedMass, &mut world)?),
-        };
-        let of_scene = (scene, formulation);
-        let step = schedule::build(Step, &STEP, self, of_scene, &mut world).map_err(unordered)?;
-        let linearise = schedule::build(Linearise, &LINEARISE, self, of_scene, &mut world)
-            .map_err(unordered)?;
-        let forces = statics.as_mut().unwrap_or(&mut evaluation);
-        placement::place(&mut world, forces, scene).map_err(|error| scene.refuse(error))?;
-        find_supports(&mut world);
-        start_environment(&mut world);
-        let Coordinates {
-            mut state,
-            topology,
-            solver,
-        } = coordinates(&mut world, scene, layout).map_err(|error| scene.refuse(error))?;
-        let mut trajectory = Trajectory::new(0.0, vec![0.0; state.layout().len()]);
-        let start = Start::of(&mut world);
-        state.gather(&mut world, &mut trajectory.state);
-        state
-            .scatter(&mut world, &trajectory.state)
-            .and_then(|()| evaluation.run(&mut world))
-            .map_err(|fault| not_evaluated(&world, scene, &fault))?;
-        start
-            .check(&mut world)
-            .map_err(|error| scene.refuse(error))?;
-        let scales = state.error_scales(&mut world);
-        let coordinates = state.layout().coordinates;
-        let first_order = scales[2 * coordinates..].to_vec();
-        let mut linearisation =
-            Linearisation::new(&mut world, linearise, first_order, topology, solver);
-        let mut stable_step = stable_step::find(&mut world);
-        if has_links(scene, formulation) {
-            let springs = scene.run.elastic_links.then_some(&stable_step);
-            stable_step =
-                link_stable_step::find(&mut world, &mut linearisation, &mut *state, springs);
-        }
-        let implicit = Implicit {
-            linearisation,
-            energy: world.register_system(mechanical_energy),
-        };
-        let Choice {
-            integrator,
-            step_s,
-            description,
-        } = choose_integrator(scene, &stable_step, scales)?;
-        world.insert_resource(IntegrationSlot::new(Integration {
-            evaluation,
-            statics,
-            state,
-            implicit,
-            integrator,
-            trajectory,
-            limit_s: 0.0,
-            failure: None,
-        }));
-        Ok(Simulation {
+impl Simulation {
+    /// Of what was built.
+    pub(crate) fn new(
+        mut world: World,
+        step: Sequence,
+        duration_s: f64,
+        scene: SceneFacts,
+        (stable_step, step_s): (StableStep, Option<f64>),
+    ) -> Self {
+        Self {
             samplings: world.query(),
             world,
             step,
-            duration_s: scene.run.duration_s,
-            scene: SceneFacts {
-                name: scene.name.clone(),
-                seed: scene.run.seed,
-                formulation: scene.run.formulation.name(),
-                integrator: description,
-            },
+            duration_s,
             stable_step,
             step_s,
-        })
+            scene,
+        }
     }
-}
 
-/// What a formulation counts motion in.
-struct Coordinates {
-    state: Box<dyn StateSpace>,
-    /// Empty where the integrator never asks for it.
-    topology: Topology,
-    solver: Box<dyn StageSolver>,
-}
-
-fn coordinates(
-    world: &mut World,
-    scene: &Scene,
-    layout: Layout,
-) -> Result<Coordinates, SetupError> {
-    if has_links(scene, scene.run.formulation) {
-        let found = topology::find(world, layout)?;
-        let mechanism = link_tree::build(world, scene, &found)?;
-        let tree = mechanism.tree.clone();
-        world.insert_resource(mechanism);
-        let state = JointVector::new(world, layout.first_order);
-        let solver = LinkStages::new(tree, found.topology.clone(), state.places());
-        return Ok(Coordinates {
-            state: Box::new(state),
-            topology: found.topology,
-            solver: Box::new(solver),
-        });
-    }
-    let topology = if is_linearised(&scene.run.integrator) {
-        topology::find(world, layout)?.topology
-    } else {
-        Topology::default()
-    };
-    Ok(Coordinates {
-        state: Box::new(StateVector::new(world, layout)),
-        solver: Box::new(ShiftedSystem::new(topology.clone())),
-        topology,
-    })
-}
-
-/// A start that cannot be evaluated, rendered.
-fn not_evaluated(world: &World, scene: &Scene, fault: &Fault) -> SceneError {
-    let name = fault.entity.and_then(|entity| owner_name(world, entity));
-    let path = name
-        .as_ref()
-        .map_or_else(String::new, |name| format!("entities.{name}"));
-    let who = name.map_or_else(String::new, |name| format!("`{name}`: "));
-    scene.refuse(SetupError::new(path, format!("{who}{}", fault.message), ""))
-}
-
-fn unordered(text: String) -> SceneError {
-    SceneError::plain(format_args!(
-        "the systems of the plugins cannot be ordered: {text}"
-    ))
-}
-
-/// The wind of the first interval.
-fn start_environment(world: &mut World) {
-    world
-        .resource_mut::<EnvironmentModel>()
-        .wind
-        .begin_interval(0.0);
-}
-
-impl Simulation {
     /// Runs from the start to the end of the scene, or to where it cannot go on. Frames go to `sink`
     /// as they come; `progress` hears of every accepted step's time in s.
     pub fn run(&mut self, sink: &mut dyn ResultSink, progress: &mut dyn FnMut(f64)) -> Summary {

@@ -1,0 +1,235 @@
+//! Building a simulation: a world, its schedules, everything in its place, the integrator.
+
+use aerobot_components::run::Formulation;
+use aerobot_systems::denoc::stage_system::LinkStages;
+use aerobot_systems::dynamics::joint_vector::JointVector;
+use aerobot_systems::dynamics::state_space::{Layout, StateSpace};
+use aerobot_systems::dynamics::state_vector::StateVector;
+use aerobot_systems::environment::EnvironmentModel;
+use aerobot_systems::fault::Fault;
+use aerobot_systems::instruments::energy_guard::mechanical_energy;
+use aerobot_systems::integration::Trajectory;
+use aerobot_systems::linearised_motion::shifted_system::ShiftedSystem;
+use aerobot_systems::linearised_motion::stage_solver::StageSolver;
+use aerobot_systems::linearised_motion::topology::Topology;
+use bevy_ecs::world::World;
+
+use crate::builtin::channels::find_supports;
+use crate::builtin::tethers::has_links;
+use crate::evaluation::{Evaluation, Implicit, Integration, IntegrationSlot};
+use crate::integrator_choice::{Choice, choose_integrator, is_linearised};
+use crate::linearisation::Linearisation;
+use crate::link_start::Start;
+use crate::plugin::Simulator;
+use crate::scene::{Scene, SceneError, SetupError};
+use crate::schedule::{self, EVALUATE, Evaluate, LINEARISE, Linearise, STEP, Step};
+use crate::sequence::Sequence;
+use crate::simulation::{SceneFacts, Simulation};
+use crate::stable_step::{self, StableStep};
+use crate::stopping::owner_name;
+use crate::world::{build_world, lay_out_state};
+use crate::{link_stable_step, link_tree, placement, topology};
+
+impl Simulator {
+    /// Builds the world of a scene and places everything in it.
+    ///
+    /// # Errors
+    /// What cannot be built, rendered: no equilibrium, a step that is not stable, an altitude outside
+    /// the atmosphere, an ambiguity between systems.
+    pub fn build(&self, scene: &Scene) -> Result<Simulation, SceneError> {
+        let refuse = |error| scene.refuse(error);
+        let mut world = build_world(self, scene).map_err(refuse)?;
+        let layout = lay_out_state(&mut world);
+        let mut schedules = Schedules::new(self, scene, &mut world)?;
+        placement::place(&mut world, schedules.forces(), scene).map_err(refuse)?;
+        find_supports(&mut world);
+        start_environment(&mut world);
+        let mut coordinates = coordinates(&mut world, scene, layout).map_err(refuse)?;
+        let trajectory = start(&mut world, scene, &mut schedules, &mut *coordinates.state)?;
+        let (scales, mut linearisation) =
+            linearisation(&mut world, schedules.linearise, &mut coordinates);
+        let state = &mut *coordinates.state;
+        let stable_step = stable_step(&mut world, scene, &mut linearisation, state);
+        let Choice {
+            integrator,
+            step_s,
+            description,
+        } = choose_integrator(scene, &stable_step, scales)?;
+        let integration = Integration {
+            evaluation: schedules.evaluation,
+            statics: schedules.statics,
+            state: coordinates.state,
+            implicit: Implicit {
+                linearisation,
+                energy: world.register_system(mechanical_energy),
+            },
+            integrator,
+            trajectory,
+            limit_s: 0.0,
+            failure: None,
+        };
+        world.insert_resource(IntegrationSlot::new(integration));
+        let facts = SceneFacts {
+            name: scene.name.clone(),
+            seed: scene.run.seed,
+            formulation: scene.run.formulation.name(),
+            integrator: description,
+        };
+        let duration_s = scene.run.duration_s;
+        let steps = (stable_step, step_s);
+        Ok(Simulation::new(
+            world,
+            schedules.step,
+            duration_s,
+            facts,
+            steps,
+        ))
+    }
+}
+
+/// Everything that is ordered.
+struct Schedules {
+    evaluation: Evaluation,
+    /// The forces of the lumped formulation, where another moves the world.
+    statics: Option<Evaluation>,
+    step: Sequence,
+    linearise: Sequence,
+}
+
+impl Schedules {
+    fn new(simulator: &Simulator, scene: &Scene, world: &mut World) -> Result<Self, SceneError> {
+        let formulation = scene.run.formulation;
+        let evaluate = |formulation, world: &mut World| {
+            let of_scene = (scene, formulation);
+            schedule::build(Evaluate, &EVALUATE, simulator, of_scene, world)
+                .map(|schedule| Evaluation { schedule })
+                .map_err(unordered)
+        };
+        let of_scene = (scene, formulation);
+        Ok(Self {
+            evaluation: evaluate(formulation, world)?,
+            statics: match formulation {
+                Formulation::LumpedMass => None,
+                Formulation::Denoc => Some(evaluate(Formulation::LumpedMass, world)?),
+            },
+            step: schedule::build(Step, &STEP, simulator, of_scene, world).map_err(unordered)?,
+            linearise: schedule::build(Linearise, &LINEARISE, simulator, of_scene, world)
+                .map_err(unordered)?,
+        })
+    }
+
+    /// What finds states of rest.
+    fn forces(&mut self) -> &mut Evaluation {
+        self.statics.as_mut().unwrap_or(&mut self.evaluation)
+    }
+}
+
+/// The state that the components start from, evaluated.
+fn start(
+    world: &mut World,
+    scene: &Scene,
+    schedules: &mut Schedules,
+    state: &mut dyn StateSpace,
+) -> Result<Trajectory, SceneError> {
+    let mut trajectory = Trajectory::new(0.0, vec![0.0; state.layout().len()]);
+    let start = Start::of(world);
+    state.gather(world, &mut trajectory.state);
+    state
+        .scatter(world, &trajectory.state)
+        .and_then(|()| schedules.evaluation.run(world))
+        .map_err(|fault| not_evaluated(world, scene, &fault))?;
+    start.check(world).map_err(|error| scene.refuse(error))?;
+    Ok(trajectory)
+}
+
+/// The scales of errors, and the linearised motion.
+fn linearisation(
+    world: &mut World,
+    schedule: Sequence,
+    coordinates: &mut Coordinates,
+) -> (Vec<f64>, Linearisation) {
+    let scales = coordinates.state.error_scales(world);
+    let first_order = scales[2 * coordinates.state.layout().coordinates..].to_vec();
+    let topology = std::mem::take(&mut coordinates.topology);
+    let solver = coordinates.solver.take();
+    let solver = solver.unwrap_or_else(|| Box::new(ShiftedSystem::new(topology.clone())));
+    let linearisation = Linearisation::new(world, schedule, first_order, topology, solver);
+    (scales, linearisation)
+}
+
+fn stable_step(
+    world: &mut World,
+    scene: &Scene,
+    linearisation: &mut Linearisation,
+    state: &mut dyn StateSpace,
+) -> StableStep {
+    let of_springs = stable_step::find(world);
+    if !has_links(scene, scene.run.formulation) {
+        return of_springs;
+    }
+    let springs = scene.run.elastic_links.then_some(&of_springs);
+    link_stable_step::find(world, linearisation, state, springs)
+}
+
+/// What a formulation counts motion in.
+struct Coordinates {
+    state: Box<dyn StateSpace>,
+    /// Empty where the integrator never asks for it.
+    topology: Topology,
+    /// Of the lumped formulation there is none: it follows from the topology.
+    solver: Option<Box<dyn StageSolver>>,
+}
+
+fn coordinates(
+    world: &mut World,
+    scene: &Scene,
+    layout: Layout,
+) -> Result<Coordinates, SetupError> {
+    if has_links(scene, scene.run.formulation) {
+        let found = topology::find(world, layout)?;
+        let mechanism = link_tree::build(world, scene, &found)?;
+        let tree = mechanism.tree.clone();
+        world.insert_resource(mechanism);
+        let state = JointVector::new(world, layout.first_order);
+        let solver = LinkStages::new(tree, found.topology.clone(), state.places());
+        return Ok(Coordinates {
+            state: Box::new(state),
+            topology: found.topology,
+            solver: Some(Box::new(solver)),
+        });
+    }
+    let topology = if is_linearised(&scene.run.integrator) {
+        topology::find(world, layout)?.topology
+    } else {
+        Topology::default()
+    };
+    Ok(Coordinates {
+        state: Box::new(StateVector::new(world, layout)),
+        solver: None,
+        topology,
+    })
+}
+
+/// A start that cannot be evaluated, rendered.
+fn not_evaluated(world: &World, scene: &Scene, fault: &Fault) -> SceneError {
+    let name = fault.entity.and_then(|entity| owner_name(world, entity));
+    let path = name
+        .as_ref()
+        .map_or_else(String::new, |name| format!("entities.{name}"));
+    let who = name.map_or_else(String::new, |name| format!("`{name}`: "));
+    scene.refuse(SetupError::new(path, format!("{who}{}", fault.message), ""))
+}
+
+fn unordered(text: String) -> SceneError {
+    SceneError::plain(format_args!(
+        "the systems of the plugins cannot be ordered: {text}"
+    ))
+}
+
+/// The wind of the first interval.
+fn start_environment(world: &mut World) {
+    world
+        .resource_mut::<EnvironmentModel>()
+        .wind
+        .begin_interval(0.0);
+}
