@@ -1,21 +1,22 @@
 //! How large an error of a step is, for a world of tethers: in metres, and in the strain of segments.
 //!
-//! Positions of bodies count over the tolerance, rotations times their arm, positions of nodes less. The strain error
-//! `k (|t.(e_(s+1) - e_s)| + |e_(s+1) - e_s|^2 / 2 L)`, t the direction at the end of the step, counts over a part of a reference tension: at a loose tolerance in metres
-//! an error within it can still be a tension that no tether bears, and throws the chain into a slack
-//! rattle. Velocities do not count: they would make the step follow axial waves that the method damps.
+//! Positions of bodies count over the tolerance, rotations times their arm, positions of nodes less. The
+//! strain error `k (|t.(e_(s+1) - e_s)| + |e_(s+1) - e_s|^2 / 2 L)`, t the direction at the end of the step,
+//! counts over a part of the line's tension: at a loose tolerance in metres an error within it can still be a
+//! tension that no tether bears, and throws the chain into a slack rattle. Velocities do not count: they would
+//! make the step follow axial waves that the method damps.
 
 use glam::DVec3;
 
 use super::body_block::Twist;
 use super::derivatives::{Derivatives, LinearEnd, LinearSegment};
-use super::topology::{End, Topology};
+use super::topology::{End, Line, Topology};
 
 /// Errors of nodes count by this beside bodies: they are transverse waves of the tethers, most of which
 /// average out before they reach a body. Not so where something is slack: a fold does not average out.
 const WEIGHT_OF_NODES: f64 = 0.15;
-/// Part of the reference tension that a strain error may be. At a tenth, very
-/// stiff lines slowly gather energy at loose tolerances; at this they do not, and need no more steps.
+/// Part of the reference tension that a strain error may be. At a tenth, very stiff lines slowly gather
+/// energy at loose tolerances; at this they do not, and need no more steps.
 const PART_OF_TENSION: f64 = 0.05;
 
 /// The largest error of a position in `e`, weighed, in m, and its place in the state; `has_slack` says whether
@@ -50,7 +51,8 @@ pub fn position_error(topology: &Topology, e: &[f64], has_slack: bool) -> (f64, 
 }
 
 /// The largest error of a segment's tension for the error `e` of a step by `increment`, over what is
-/// allowed, and a place in the state by it. `least_tension_n` is the smallest reference tension.
+/// allowed, and a place in the state by it. What is allowed is a part of the line's own tension, of at least
+/// the weight of the lighter body at its ends; `least_tension_n`, of the heaviest body, where that is less.
 #[must_use]
 pub fn strain_error(
     topology: &Topology,
@@ -59,9 +61,10 @@ pub fn strain_error(
     increment: &[f64],
     least_tension_n: f64,
 ) -> (f64, usize) {
-    let mut largest = (0.0, 0);
-    let mut tension_n = least_tension_n;
+    let mut worst = (0.0, 0);
     for (line, ends) in topology.lines.iter().zip(&derivatives.ends) {
+        let mut largest = (0.0, 0);
+        let mut tension_n = reference_n(derivatives, line, least_tension_n);
         let segments = &derivatives.segments[line.segments()];
         let mut before = end_error(topology, line.from, &ends[0], e);
         let mut moved = end_error(topology, line.from, &ends[0], increment);
@@ -93,8 +96,33 @@ pub fn strain_error(
             turn,
             line.nodes.saturating_sub(1),
         );
+        let of_line = largest.0 / (PART_OF_TENSION * tension_n);
+        if of_line > worst.0 || of_line.is_nan() {
+            worst = (of_line, largest.1);
+        }
     }
-    (largest.0 / (PART_OF_TENSION * tension_n), largest.1)
+    worst
+}
+
+/// The smallest reference tension of a line, N: the weight of the lighter body at its ends, at most
+/// `least_n`. A line that carries little beside one that carries much would else rattle within what the
+/// other allows.
+fn reference_n(derivatives: &Derivatives, line: &Line, least_n: f64) -> f64 {
+    let weights = [line.from, line.to]
+        .into_iter()
+        .filter_map(|end| match end {
+            End::OnBody(body) => {
+                let mass_kg = derivatives.bodies[body].mass.linear.x_axis.x;
+                Some(mass_kg * derivatives.gravity_m_s2)
+            }
+            End::Held => None,
+        });
+    let lightest_n = weights.fold(least_n, f64::min);
+    if lightest_n > 0.0 {
+        lightest_n
+    } else {
+        least_n
+    }
 }
 
 /// The error of an end of a tether, m.
