@@ -13,7 +13,7 @@
 
 mod flight;
 
-use flight::{fly, fly_scene, scene_file};
+use flight::{fly, fly_scene, reference_displacements, scene_file};
 use glam::DVec3;
 
 const CENTRED: [&str; 4] = [
@@ -44,7 +44,10 @@ fn largest_difference(integrator: &str) -> f64 {
         largest = largest.max(difference.abs().max_element());
     }
     let mut at_seconds = 0.0_f64;
-    for (second, [balloon_m, gondola_m]) in reference().into_iter().enumerate() {
+    for (second, [balloon_m, gondola_m]) in reference_displacements("comparison_lumped.csv")
+        .into_iter()
+        .enumerate()
+    {
         assert_eq!(balloon[second].0, second as f64);
         for (track, expected) in [(&balloon, balloon_m), (&gondola, gondola_m)] {
             let difference = displaced(track, second) - expected;
@@ -53,28 +56,6 @@ fn largest_difference(integrator: &str) -> f64 {
     }
     println!("against six printed digits: {largest:.3e} m; every second: {at_seconds:.3e} m");
     largest.max(at_seconds)
-}
-
-/// Displacements of balloon and gondola at every second, m; empty without the reference data.
-fn reference() -> Vec<[DVec3; 2]> {
-    let file = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../shared/reference/comparison_lumped.csv"
-    );
-    let text = std::fs::read_to_string(file).unwrap_or_default();
-    text.lines()
-        .filter(|line| line.starts_with(|c: char| c.is_ascii_digit()))
-        .map(|line| {
-            let values: Vec<f64> = line
-                .split(',')
-                .map(|field| field.parse().unwrap())
-                .collect();
-            [
-                DVec3::from_slice(&values[1..]),
-                DVec3::from_slice(&values[4..]),
-            ]
-        })
-        .collect()
 }
 
 /// The printed digits end at 1e-6; the trajectory is asked for to 1e-5.

@@ -16,7 +16,7 @@
 mod flight;
 
 use aerobot::engine::recording::frame::{Frame, MemorySink, StateRow};
-use flight::{assert_below, fly, fly_scene};
+use flight::{assert_below, fly, fly_scene, reference_displacements};
 use glam::{DQuat, DVec3};
 
 const CENTRED: [&str; 5] = [
@@ -42,7 +42,7 @@ fn largest_difference(links: &str, integrator: &str, file: &str, at_100_s: [DVec
         let difference = displaced(which, 100) - expected;
         largest = largest.max(difference.abs().max_element());
     }
-    for (second, expected) in reference(file).into_iter().enumerate() {
+    for (second, expected) in reference_displacements(file).into_iter().enumerate() {
         for (which, expected) in expected.into_iter().enumerate() {
             assert_eq!(tracks[which][second].0, second as f64);
             let difference = displaced(which, second) - expected;
@@ -51,25 +51,6 @@ fn largest_difference(links: &str, integrator: &str, file: &str, at_100_s: [DVec
     }
     println!("{links}, {integrator}: {largest:.1e} m");
     largest
-}
-
-/// Displacements of balloon and gondola at every second, m; empty without the reference data.
-fn reference(file: &str) -> Vec<[DVec3; 2]> {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/reference/");
-    let text = std::fs::read_to_string(format!("{folder}{file}")).unwrap_or_default();
-    text.lines()
-        .filter(|line| line.starts_with(|c: char| c.is_ascii_digit()))
-        .map(|line| {
-            let values: Vec<f64> = line
-                .split(',')
-                .map(|field| field.parse().unwrap())
-                .collect();
-            [
-                DVec3::from_slice(&values[1..]),
-                DVec3::from_slice(&values[4..]),
-            ]
-        })
-        .collect()
 }
 
 const POINTS: [DVec3; 2] = [

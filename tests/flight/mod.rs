@@ -111,3 +111,23 @@ pub(crate) fn summary_of(text: &str, overrides: &[&str]) -> (MemorySink, Summary
     let simulator = Simulator::new();
     run_for_summary(&simulator, &load(&simulator, text, overrides))
 }
+
+/// Displacements of balloon and gondola of the comparison case at every second, m, from a file of
+/// `../shared/reference`; empty where that is not there.
+pub(crate) fn reference_displacements(file: &str) -> Vec<[DVec3; 2]> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/reference/");
+    let text = std::fs::read_to_string(format!("{folder}{file}")).unwrap_or_default();
+    text.lines()
+        .filter(|line| line.starts_with(|c: char| c.is_ascii_digit()))
+        .map(|line| {
+            let values: Vec<f64> = line
+                .split(',')
+                .map(|field| field.parse().unwrap_or_else(|_| panic!("{file}: `{line}`")))
+                .collect();
+            [
+                DVec3::from_slice(&values[1..]),
+                DVec3::from_slice(&values[4..]),
+            ]
+        })
+        .collect()
+}

@@ -9,8 +9,8 @@
 //!
 //! which are the equations of forward dynamics with velocities for accelerations, momenta for forces and no
 //! velocity terms. Momentum is conserved, whatever body the tree grows from; of all motions that the joints
-//! allow, this is the nearest in the norm of kinetic energy (Goldstein, Poole and Safko 2002, sec. 2.3, for
-//! the constraint; Pars 1965, ch. 14, Gauss' and Robin's theorems).
+//! allow, this is the nearest to v* in the norm of kinetic energy (Gauss' principle of least constraint, for
+//! impulses).
 
 use glam::DVec3;
 
