@@ -13,15 +13,8 @@
 
 mod flight;
 
-use flight::{fly, fly_scene, reference_displacements, scene_file};
+use flight::{CENTRED_COMPARISON, fly, fly_scene, reference_displacements, scene_file};
 use glam::DVec3;
-
-const CENTRED: [&str; 4] = [
-    "environment.atmosphere=Uniform(density_kg_m3: 0.8183)",
-    "entities.tether.Tether.lumping=Interior",
-    "entities.tether.Tether.from=(\"balloon\", (0, 0, 0))",
-    "entities.tether.Tether.to=(\"gondola\", (0, 0, 0))",
-];
 
 /// Displacements from the start at 100 s, balloon then gondola, m.
 const AT_100_S: [DVec3; 2] = [
@@ -30,7 +23,7 @@ const AT_100_S: [DVec3; 2] = [
 ];
 
 fn largest_difference(integrator: &str) -> f64 {
-    let mut overrides = CENTRED.to_vec();
+    let mut overrides = CENTRED_COMPARISON.to_vec();
     overrides.push(integrator);
     let results = fly_scene("paper/comparison_900m.ron", &overrides);
     let balloon = results.positions("balloon");
@@ -105,7 +98,12 @@ fn assert_follows(variant: &Variant) {
 #[test]
 fn val_exponential_density() {
     assert_follows(&Variant {
-        overrides: &[EXPONENTIAL, INTERIOR, CENTRED[2], CENTRED[3]],
+        overrides: &[
+            EXPONENTIAL,
+            INTERIOR,
+            CENTRED_COMPARISON[2],
+            CENTRED_COMPARISON[3],
+        ],
         rows: [
             (
                 30,
@@ -153,7 +151,13 @@ fn val_offset_attachments() {
 #[test]
 fn val_added_mass() {
     assert_follows(&Variant {
-        overrides: &[UNIFORM, INTERIOR, CENTRED[2], CENTRED[3], ADDED_MASS],
+        overrides: &[
+            UNIFORM,
+            INTERIOR,
+            CENTRED_COMPARISON[2],
+            CENTRED_COMPARISON[3],
+            ADDED_MASS,
+        ],
         rows: [
             (
                 30,

@@ -12,7 +12,7 @@
 mod flight;
 
 use aerobot::engine::recording::frame::MemorySink;
-use flight::{assert_below, fly_scene, largest_distance_m, summary_of};
+use flight::{CENTRED_COMPARISON, assert_below, fly_scene, largest_distance_m, summary_of};
 
 const COMPARISON: &str = "paper/comparison_900m.ron";
 const BRANCHED: &str = "examples/branched_chain.ron";
@@ -21,14 +21,6 @@ const DENOC: &str = "run.formulation=Denoc";
 const POINT_MASSES: &str = "run.links=PointMass";
 const ELASTIC: &str = "run.elastic_links=true";
 const TIGHT: &str = "run.integrator=Adaptive(relative_tolerance: 1e-10)";
-
-/// The comparison case as separate programs have computed it (`tests/comparison.rs`).
-const CENTRED: [&str; 4] = [
-    "environment.atmosphere=Uniform(density_kg_m3: 0.8183)",
-    "entities.tether.Tether.lumping=Interior",
-    "entities.tether.Tether.from=(\"balloon\", (0, 0, 0))",
-    "entities.tether.Tether.to=(\"gondola\", (0, 0, 0))",
-];
 
 fn fly_with(scene: &str, overrides: &[&str], more: &[String]) -> MemorySink {
     let more = more.iter().map(String::as_str);
@@ -89,12 +81,12 @@ fn accuracy_for(stiffness_n: f64) -> f64 {
 /// integrator.
 #[test]
 fn val_lumped_masses_become_point_mass_links_as_the_tether_stiffens() {
-    let links = [CENTRED.as_slice(), &[DENOC, POINT_MASSES, TIGHT]].concat();
+    let links = [CENTRED_COMPARISON.as_slice(), &[DENOC, POINT_MASSES, TIGHT]].concat();
     let links = fly_scene(COMPARISON, &links);
     let difference = |stiffness_n: f64| {
         let mut more = stiffer("tether", 2e5, stiffness_n / 2e5).to_vec();
         more.push(implicit(accuracy_for(stiffness_n)));
-        let lumped = fly_with(COMPARISON, &CENTRED, &more);
+        let lumped = fly_with(COMPARISON, &CENTRED_COMPARISON, &more);
         largest_difference_m(&lumped, &links, &["balloon", "gondola"])
     };
     let differences = STIFFNESSES_N.map(difference);

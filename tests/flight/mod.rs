@@ -10,6 +10,15 @@ use aerobot::engine::recording::summary::Summary;
 use aerobot::engine::scene::Scene;
 use glam::DVec3;
 
+/// What makes `paper/comparison_900m.ron` the case that separate programs have computed: uniform density, the
+/// tether's mass on its nodes, attachments at the centres of mass.
+pub(crate) const CENTRED_COMPARISON: [&str; 4] = [
+    "environment.atmosphere=Uniform(density_kg_m3: 0.8183)",
+    "entities.tether.Tether.lumping=Interior",
+    "entities.tether.Tether.from=(\"balloon\", (0, 0, 0))",
+    "entities.tether.Tether.to=(\"gondola\", (0, 0, 0))",
+];
+
 /// A scene of the repository.
 pub(crate) fn scene_file(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))

@@ -193,12 +193,7 @@ impl LinkStages {
         let motions = self.motions.iter().zip(&self.speeds);
         let bodies = derivatives.bodies.iter().zip(motions);
         for (load, (body, (shift, speed))) in self.body_loads.iter_mut().zip(bodies) {
-            let push = body.mass.times(*speed);
-            let pull = body.stiffness.times(*shift);
-            *load = Twist {
-                linear: g * push.linear - g * g * pull.linear,
-                angular: g * push.angular - g * g * pull.angular,
-            };
+            *load = body.stage_load(g, *shift, *speed);
         }
     }
 

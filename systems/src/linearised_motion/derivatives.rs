@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::body_block::{BodyBlock, Place, cross_matrix};
+use super::body_block::{BodyBlock, Place, Twist, cross_matrix};
 use super::symmetric3::Symmetric3;
 use super::topology::{End, Topology};
 
@@ -59,6 +59,20 @@ pub struct LinearBody {
     pub damping: BodyBlock,
     /// -dF/dx, without the segments.
     pub stiffness: BodyBlock,
+}
+
+impl LinearBody {
+    /// What loads it in a stage with g (s) where it is shifted by `shift` and its speed by `speed`, without
+    /// its tethers: `g M r_v + g^2 K r_x`.
+    #[must_use]
+    pub fn stage_load(&self, g: f64, shift: Twist, speed: Twist) -> Twist {
+        let push = self.mass.times(speed);
+        let pull = self.stiffness.times(shift);
+        Twist {
+            linear: g * push.linear - g * g * pull.linear,
+            angular: g * push.angular - g * g * pull.angular,
+        }
+    }
 }
 
 /// The end of a tether on a free body, at the state.

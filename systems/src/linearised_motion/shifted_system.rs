@@ -205,13 +205,8 @@ impl ShiftedSystem {
         for ((index, site), body) in sites.enumerate().zip(&derivatives.bodies) {
             let at = site.first_state;
             let shift = twist_at(r_x, at);
-            let push = body.mass.times(twist_at(r_v, at));
-            let pull = body.stiffness.times(shift);
             self.motions[index] = shift;
-            self.pushes[index] = Twist {
-                linear: g * push.linear - g * g * pull.linear,
-                angular: g * push.angular - g * g * pull.angular,
-            };
+            self.pushes[index] = body.stage_load(g, shift, twist_at(r_v, at));
         }
     }
 
