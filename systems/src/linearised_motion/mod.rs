@@ -19,6 +19,7 @@ pub mod derivatives;
 pub mod error_norm;
 pub mod few_bodies;
 pub mod joined_pair;
+pub mod probed_motion;
 pub mod shifted_system;
 pub mod stage_solver;
 pub mod symmetric3;
