@@ -107,7 +107,7 @@ impl Chain {
             joint_mass_kg: ROD_KG,
             stretch: Stretch::Rigid,
         };
-        let tree = KinematicTree::new(&topology, &[kind], &[]).expect("a chain is a tree");
+        let tree = KinematicTree::new(&topology, &[kind], &[]);
         let mut draws = Draws(1);
         let mut states = LinkStates::default();
         for _ in 0..links {

@@ -187,11 +187,11 @@ fn coordinates(
 ) -> Result<Coordinates, SetupError> {
     if has_links(scene, scene.run.formulation) {
         let found = topology::find(world, layout)?;
-        let mechanism = link_tree::build(world, scene, &found)?;
-        let tree = mechanism.tree.clone();
+        let mechanism = link_tree::build(world, scene, &found);
+        let (tree, tips_kg) = (mechanism.tree.clone(), mechanism.entities.tips_kg.clone());
         world.insert_resource(mechanism);
         let state = JointVector::new(world, layout.first_order);
-        let solver = LinkStages::new(tree, found.topology.clone(), state.places());
+        let solver = LinkStages::new(tree, found.topology.clone(), state.places(), tips_kg);
         return Ok(Coordinates {
             state: Box::new(state),
             topology: found.topology,

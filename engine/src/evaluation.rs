@@ -65,8 +65,8 @@ impl Equations for WorldEquations<'_> {
         Ok(())
     }
 
-    fn accept(&mut self, state: &mut [f64], rates: &mut [f64]) {
-        self.state.recentre(self.world, state, rates);
+    fn accept(&mut self, state: &mut [f64], rates: &mut [f64]) -> bool {
+        self.state.recentre(self.world, state, rates)
     }
 
     fn linearise(&mut self) {

@@ -2,50 +2,40 @@
 
 use aerobot_components::body::Anchor;
 use aerobot_components::run::LinkMass;
-use aerobot_components::state::Inertia;
+use aerobot_components::state::{Inertia, Mass};
 use aerobot_components::tether::{Attachment, Tether, TetherParts};
 use aerobot_systems::denoc::articulated_link::Stretch;
 use aerobot_systems::denoc::kinematics::LimbOffsets;
 use aerobot_systems::denoc::tree::{KinematicTree, LinkKind};
 use aerobot_systems::dynamics::link_mechanism::{LinkMechanism, TreeEntities};
+use aerobot_systems::dynamics::rigid_body::CarriedMass;
 use bevy_ecs::world::World;
 
 use crate::builtin::tethers::lumping;
-use crate::scene::{Scene, SetupError};
+use crate::scene::Scene;
 use crate::topology::WorldTopology;
-use crate::world::{EntityName, SceneEntities};
+use crate::world::SceneEntities;
 
 /// The name of the body from which a tree grows unless the scene says otherwise.
 const GONDOLA: &str = "gondola";
 
+/// The tips that a body is tied to have at most this part of its mass, and their moment of inertia about its
+/// centre at most this part of its least.
+const LENT: f64 = 0.25;
+/// Mass of a tip that is tied to an anchor, where any is right, kg.
+const AT_ANCHOR_KG: f64 = 1.0;
+
 /// The tree of a world with this topology.
-///
-/// # Errors
-/// A loop (the checks of the scene have looked for them, but a plugin may tie its own).
-pub(crate) fn build(
-    world: &World,
-    scene: &Scene,
-    found: &WorldTopology,
-) -> Result<LinkMechanism, SetupError> {
+pub(crate) fn build(world: &World, scene: &Scene, found: &WorldTopology) -> LinkMechanism {
     let kinds: Vec<LinkKind> = found
         .tethers
         .iter()
         .filter_map(|tether| Some(link_kind(scene, world.get::<Tether>(*tether)?)))
         .collect();
-    let tree = KinematicTree::new(&found.topology, &kinds, &bases(world, scene, found)).map_err(
-        |closed| {
-            let name = world
-                .get::<EntityName>(found.tethers[closed.line])
-                .map_or("", |name| &name.0);
-            SetupError::new(
-                "run.formulation",
-                format!("`Denoc` moves trees of links, and `{name}` closes a loop"),
-                "use `LumpedMass` (`--formulation lumped-mass`)",
-            )
-        },
-    )?;
-    let entities = entities(world, found, &tree);
-    Ok(LinkMechanism::new(tree, entities))
+    let tree = KinematicTree::new(&found.topology, &kinds, &bases(world, scene, found));
+    let mut entities = entities(world, found, &tree);
+    lend_to_tips(world, &tree, &mut entities);
+    LinkMechanism::new(tree, entities)
 }
 
 fn link_kind(scene: &Scene, tether: &Tether) -> LinkKind {
@@ -94,18 +84,19 @@ fn bases(world: &World, scene: &Scene, found: &WorldTopology) -> Vec<usize> {
 }
 
 fn entities(world: &World, found: &WorldTopology, tree: &KinematicTree) -> TreeEntities {
+    let turns = |body: usize| {
+        let body = found.bodies.get(body);
+        body.is_some_and(|body| world.get::<Inertia>(*body).is_some())
+    };
     let mut entities = TreeEntities {
-        turns: found
-            .bodies
-            .iter()
-            .map(|body| world.get::<Inertia>(*body).is_some())
-            .collect(),
+        turns: (0..tree.carried_by.len()).map(turns).collect(),
         bodies: found.bodies.clone(),
         points: found.topology.points,
         ..TreeEntities::default()
     };
     for limb in &tree.limbs {
         let tether = found.tethers[limb.line];
+        let is_cut = limb.child >= found.bodies.len();
         let (mut offsets, mut anchor) = (LimbOffsets::default(), None);
         if let Some(parts) = world.get::<TetherParts>(tether)
             && let (Some(first), Some(last)) = (parts.points.first(), parts.points.last())
@@ -124,17 +115,58 @@ fn entities(world: &World, found: &WorldTopology, tree: &KinematicTree) -> TreeE
             } else {
                 (to, from)
             };
-            offsets = LimbOffsets {
-                proximal_m: proximal.offset_m,
-                distal_m: distal.offset_m,
+            let anchor_of = |end: &Attachment| {
+                let is_anchor = world.get::<Anchor>(end.carrier).is_some();
+                is_anchor.then_some(end.carrier)
             };
-            anchor = world
-                .get::<Anchor>(proximal.carrier)
-                .is_some()
-                .then_some(proximal.carrier);
+            offsets.proximal_m = proximal.offset_m;
+            anchor = anchor_of(proximal);
+            if is_cut {
+                entities.offsets.ties_m.push(distal.offset_m);
+                entities.ties.push(anchor_of(distal));
+            } else {
+                offsets.distal_m = distal.offset_m;
+            }
         }
-        entities.offsets.push(offsets);
+        entities.offsets.limbs.push(offsets);
         entities.anchors.push(anchor);
+        let compliance = world
+            .get::<Tether>(tether)
+            .map_or(0.0, |tether| tether.length_m / tether.axial_stiffness_n);
+        entities.compliance_m_n.push(compliance);
     }
     entities
+}
+
+/// Takes the masses of tips from the bodies that they are tied to: so little that enough is left there.
+fn lend_to_tips(world: &World, tree: &KinematicTree, entities: &mut TreeEntities) {
+    entities.lent = vec![CarriedMass::default(); entities.bodies.len()];
+    for (index, closure) in tree.closures.iter().enumerate() {
+        let Some(body) = closure.onto else {
+            entities.tips_kg.push(AT_ANCHOR_KG);
+            continue;
+        };
+        let tied = tree
+            .closures
+            .iter()
+            .filter(|other| other.onto == Some(body));
+        let part = LENT / tied.count() as f64;
+        let entity = entities.bodies[body];
+        let offset_m = entities.offsets.ties_m[index];
+        let mut kg = part * world.get::<Mass>(entity).map_or(0.0, |mass| mass.0);
+        if let Some(inertia) = world.get::<Inertia>(entity) {
+            let least = smallest_moment_kg_m2(inertia);
+            kg = kg.min(part * least / offset_m.length_squared());
+        }
+        entities.tips_kg.push(kg);
+        entities.lent[body].add(-kg, offset_m);
+    }
+}
+
+/// No more than the smallest moment of inertia: the determinant over the square of half the trace, which two
+/// of three principal moments cannot exceed in the mean.
+fn smallest_moment_kg_m2(inertia: &Inertia) -> f64 {
+    let tensor = inertia.0;
+    let half_trace = 0.5 * (tensor.x_axis.x + tensor.y_axis.y + tensor.z_axis.z);
+    tensor.determinant() / (half_trace * half_trace)
 }

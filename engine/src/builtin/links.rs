@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use aerobot_components::body::{Body, Fixed, Moving};
-use aerobot_components::run::Formulation;
 use aerobot_components::scene_component::FieldReport;
 use aerobot_components::segment::{RigidLink, Segment, Tension};
 use aerobot_components::state::Mass;
@@ -35,7 +34,6 @@ pub struct LinksPlugin;
 impl Plugin for LinksPlugin {
     fn build(&self, simulator: &mut Simulator) {
         simulator
-            .add_check(check_loops)
             .add_check(check_base)
             .add_systems_in(Phase::Dynamics, has_links, || {
                 (solve_links, accelerate_by_links, add_reactions).chain()
@@ -57,43 +55,6 @@ fn corner<'a>(scene: &Scene, name: &'a str) -> &'a str {
     }
 }
 
-/// A tree has no loops.
-fn check_loops(scene: &Scene, report: &mut FieldReport) {
-    if scene.run.formulation != Formulation::Denoc {
-        return;
-    }
-    let mut joined = Joined::new();
-    for (entity, tether) in scene.with::<Tether>() {
-        if tether.from.0 == tether.to.0 {
-            // Refused by itself.
-            continue;
-        }
-        let from = corner(scene, &tether.from.0);
-        let to = corner(scene, &tether.to.0);
-        if let Some(mut names) = path_between(&joined, from, to) {
-            names.push(&entity.name);
-            let what = match names.as_slice() {
-                [one] => format!("the tether `{one}` closes a loop by itself"),
-                _ => format!("the tethers `{}` close a loop", names.join("`, `")),
-            };
-            let through = if !passes_anchors(scene, &names) {
-                ""
-            } else if names.len() == 1 {
-                " through its two anchors"
-            } else {
-                " through the anchors that hold them"
-            };
-            report.add(
-                "run.formulation",
-                format!("`Denoc` moves trees of links, and {what}{through}"),
-                "use `LumpedMass` (`--formulation lumped-mass`), which takes any graph of tethers",
-            );
-            return;
-        }
-        join(scene, &mut joined, &entity.name, tether);
-    }
-}
-
 /// What each corner is joined to, and by which tether.
 type Joined<'a> = BTreeMap<&'a str, Vec<(&'a str, &'a str)>>;
 
@@ -102,17 +63,6 @@ fn join<'a>(scene: &Scene, joined: &mut Joined<'a>, name: &'a str, tether: &'a T
     let to = corner(scene, &tether.to.0);
     joined.entry(from).or_default().push((to, name));
     joined.entry(to).or_default().push((from, name));
-}
-
-/// Whether a loop is closed by anchors, whose paths are prescribed and which count as one.
-fn passes_anchors(scene: &Scene, tethers: &[&str]) -> bool {
-    let of = |name: &&str| scene.entity(name)?.get::<Tether>();
-    let ends = tethers.iter().filter_map(of);
-    let anchors: BTreeSet<&str> = ends
-        .flat_map(|tether| [tether.from.0.as_str(), tether.to.0.as_str()])
-        .filter(|name| corner(scene, name).is_empty())
-        .collect();
-    anchors.len() > 1
 }
 
 /// The tethers by which one corner is reached from another, if it is.

@@ -23,7 +23,7 @@
 //! has sums of positive terms where the usual rank-one update takes differences. An elastic link is free
 //! along e too: s = 0, and its tension is a force in b.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::linearised_motion::symmetric3::Symmetric3;
 
@@ -213,12 +213,29 @@ impl<E: Coupling> ArticulatedLink<E> {
             bias.tension + more,
         )
     }
+
+    /// How Q follows P where nothing else pushes: F in a_Q = F a_P + W f, f a force at Q; F' f is what the
+    /// link passes on of it.
+    #[must_use]
+    pub fn follows(&self) -> DMat3 {
+        let column = |v: DVec3| {
+            let pulled = (self.stiffness * self.along.dot(v)) * self.across;
+            self.inverse.times(self.coupling.times(v)) + pulled
+        };
+        DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z))
+    }
+
+    /// How Q yields to a force on it while P is held: W.
+    #[must_use]
+    pub fn yields(&self) -> Symmetric3 {
+        let pulled = Symmetric3::along(self.across, self.stiffness, 0.0);
+        self.inverse.plus_scaled(pulled, -1.0)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DMat3;
 
     fn sample() -> (Carried, DVec3) {
         let m = DMat3::from_cols(
@@ -254,6 +271,11 @@ mod tests {
             Stretch::Rigid => assert!((e.dot(distal - proximal) - c).abs() < 1e-14),
             Stretch::Elastic => assert_eq!(tension, 0.0),
         }
+        let pushed = link.inward(-b, 0.0);
+        let (answer, _) = link.outward(&pushed, proximal);
+        let expected = link.follows() * proximal + link.yields().times(b);
+        assert!((answer - expected).length() < 1e-13);
+        assert!((pushed.passed_on + link.follows().transpose() * b).length() < 1e-13);
     }
 
     #[test]

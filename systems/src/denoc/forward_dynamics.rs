@@ -39,10 +39,12 @@ pub struct Loads {
     /// Force on each joint between links, by index of the point, inertial frame, N; those on attachments
     /// are in the loads of the bodies. Tensions of elastic links are here, of rigid ones not.
     pub point_n: Vec<DVec3>,
-    /// Of each body.
+    /// Of each body and tip.
     pub bodies: Vec<BodyLoad>,
     /// Acceleration of the anchor of each limb that has one, m/s^2.
     pub anchor_m_s2: Vec<DVec3>,
+    /// Acceleration of the anchor of each closure that has one, m/s^2.
+    pub tie_m_s2: Vec<DVec3>,
 }
 
 /// What comes out.
@@ -55,7 +57,7 @@ pub struct Accelerations {
     /// Tension of each rigid link, by its place in the tree, N; positive pulls its ends together. Of a
     /// rod the mean along its length.
     pub tension_n: Vec<f64>,
-    /// Of each body: linear in the inertial frame, m/s^2, angular in the body frame, rad/s^2.
+    /// Of each body and tip: linear in the inertial frame, m/s^2, angular in the body frame, rad/s^2.
     pub bodies: Vec<Twist>,
 }
 
@@ -65,12 +67,18 @@ pub struct ForwardDynamics {
     links: Vec<ArticulatedLink<f64>>,
     biases: Vec<LinkBias>,
     bodies: Vec<ArticulatedBody>,
+    /// Of bases: what they would pass on.
+    at_base: Vec<Symmetric3>,
+    /// What each limb carries at its distal end.
+    carried: Vec<Symmetric3>,
     body_biases: Vec<BodyBias>,
     inertias: Vec<BodyBlock>,
     /// What links pass on to knots.
     knots: Vec<Carried>,
     body_loads: Vec<Twist>,
     ends: Vec<[LimbEnd; 2]>,
+    /// Of bodies and tips, in the answer to more loads.
+    motions: Vec<Twist>,
 }
 
 /// An end of a limb on a body, or on an anchor, which does not turn.
@@ -112,11 +120,14 @@ impl ForwardDynamics {
             links: vec![ArticulatedLink::default(); tree.links],
             biases: vec![LinkBias::default(); tree.links],
             bodies: vec![ArticulatedBody::default(); bodies],
+            at_base: vec![Symmetric3::default(); bodies],
+            carried: vec![Symmetric3::default(); tree.limbs.len()],
             body_biases: vec![BodyBias::default(); bodies],
             inertias: vec![BodyBlock::ZERO; bodies],
             knots: vec![Carried::default(); bodies],
             body_loads: vec![Twist::default(); bodies],
             ends: vec![[end; 2]; tree.limbs.len()],
+            motions: vec![Twist::default(); bodies],
         }
     }
 
@@ -177,6 +188,7 @@ impl ForwardDynamics {
         if tree.knots[child] {
             carried = self.knots[child].plus(inertia);
         }
+        self.carried[index] = carried.total();
         let mut force = bias.passed_on;
         let spans = &states.span_m[limb.links.clone()];
         let rates = &states.rate_m_s[limb.links.clone()];
@@ -225,6 +237,8 @@ impl ForwardDynamics {
         let turns = loads.bodies[base].turns;
         let (body, inertia) = ArticulatedBody::new(&self.inertias[base], CENTRE, turns);
         let bias = body.inward(-self.body_loads[base], DVec3::ZERO);
+        self.bodies[base] = body;
+        self.at_base[base] = inertia;
         body.free(&bias, &inertia)
     }
 
@@ -265,6 +279,7 @@ impl Loads {
             point_n: vec![DVec3::ZERO; points],
             bodies: vec![BodyLoad::default(); tree.carried_by.len()],
             anchor_m_s2: vec![DVec3::ZERO; tree.limbs.len()],
+            tie_m_s2: vec![DVec3::ZERO; tree.closures.len()],
         }
     }
 }
@@ -280,7 +295,17 @@ impl Accelerations {
             bodies: vec![Twist::default(); tree.carried_by.len()],
         }
     }
+
+    /// All zero.
+    pub fn clear(&mut self) {
+        self.span_m_s2.fill(DVec3::ZERO);
+        self.point_m_s2.fill(DVec3::ZERO);
+        self.tension_n.fill(0.0);
+        self.bodies.fill(Twist::default());
+    }
 }
+
+pub mod response;
 
 #[cfg(test)]
 mod tests;

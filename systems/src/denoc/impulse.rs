@@ -14,21 +14,24 @@
 
 use glam::DVec3;
 
-use super::forward_dynamics::{Accelerations, ForwardDynamics, Loads, Massless};
-use super::kinematics::{BodyState, LimbOffsets, LinkStates, PointState};
+use super::closed_dynamics::{ClosedDynamics, Offsets};
+use super::forward_dynamics::{Accelerations, Loads, Massless};
+use super::kinematics::{BodyState, LinkStates, PointState};
 use super::tree::KinematicTree;
 use crate::linearised_motion::body_block::{Place, Twist};
 
 /// Finds the motion that the joints make of `points` and `bodies`, whose masses are in `loads`: rates of the
 /// links' spans, and of bodies velocity and angular velocity (body frame), where `out` has accelerations.
+/// `ties_m_s` are the velocities of the anchors of closures. Leaves the factors of this state in `dynamics`.
 ///
 /// # Errors
 /// [`Massless`].
 pub fn allowed_motion(
     tree: &KinematicTree,
+    dynamics: &mut ClosedDynamics,
     span_m: &[DVec3],
     (points, bodies): (&[PointState], &[BodyState]),
-    offsets: &[LimbOffsets],
+    (offsets, ties_m_s): (&Offsets, &[DVec3]),
     loads: &Loads,
     out: &mut Accelerations,
 ) -> Result<(), Massless> {
@@ -47,6 +50,7 @@ pub fn allowed_motion(
         momentum.load = momentum.mass.times(motion);
         body.rate_rad_s = DVec3::ZERO;
     }
+    momenta.tie_m_s2.copy_from_slice(ties_m_s);
     for (index, (limb, kind)) in tree.limbs.iter().zip(&tree.kinds).enumerate() {
         let first = limb.proximal_point();
         momenta.anchor_m_s2[index] = points[first].velocity_m_s;
@@ -70,11 +74,14 @@ pub fn allowed_motion(
                 }
             };
             let is_last = k + 1 == limb.links.len();
-            let (near, far) = (offsets[index].proximal_m, offsets[index].distal_m);
+            let (near, far) = (
+                offsets.limbs[index].proximal_m,
+                offsets.limbs[index].distal_m,
+            );
             add(k == 0, before, limb.parent, near, -between);
             add(is_last, here, Some(limb.child), far, between);
             before = here;
         }
     }
-    ForwardDynamics::new(tree).solve(tree, (&links, &still), offsets, &momenta, out)
+    dynamics.solve(tree, (&links, &still), offsets, &momenta, out)
 }

@@ -36,10 +36,13 @@
 
 pub mod articulated_body;
 pub mod articulated_link;
+pub mod closed_dynamics;
 pub mod forward_dynamics;
 pub mod impulse;
 pub mod inverse_dynamics;
 pub mod joint_coordinates;
 pub mod kinematics;
+pub mod loops;
+pub mod reduced_tree;
 pub mod stage_system;
 pub mod tree;

@@ -11,11 +11,16 @@
 //! its chart is -e/L). Terms in velocities are left out, as the integrator allows. The matrix has the form
 //! of a mass matrix, so that [`super::articulated_link`] and [`super::articulated_body`] solve it as they
 //! solve for accelerations; factors are kept for the stages of a step.
+//!
+//! Loops ask that V keeps their tips at their places, G V = g G r_v: multipliers see to it
+//! ([`super::loops`]), with the answers of the factorised matrix.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::articulated_body::{ArticulatedBody, BodyBias, CENTRE};
 use super::articulated_link::{ArticulatedLink, Carried, LinkBias, Stretch};
+use super::loops::Loops;
+use super::reduced_tree::Factors;
 use super::tree::{KinematicTree, Limb};
 use crate::linearised_motion::body_block::{BodyBlock, Place, Twist};
 use crate::linearised_motion::derivatives::Derivatives;
@@ -26,7 +31,7 @@ use crate::linearised_motion::topology::{Line, Topology};
 /// Where in the state the joint coordinates stand.
 #[derive(Clone, Debug, Default)]
 pub struct JointPlaces {
-    /// Of each body: its displacement, if it is a base, and its rotation, if it has one.
+    /// Of each body and tip: its displacement, if it is a base, and its rotation, if it has one.
     pub bodies: Vec<(Option<usize>, Option<usize>)>,
     /// Of the first link; three for each.
     pub first_link: usize,
@@ -50,6 +55,12 @@ pub struct LinkStages {
     blocks: Vec<BodyBlock>,
     /// What links pass on to knots.
     knots: Vec<Carried>,
+    /// What each limb carries at its distal end.
+    carried: Vec<Symmetric3>,
+    /// Mass of the tip of each closure, lent by the body that it is tied to, kg.
+    tips_kg: Vec<f64>,
+    loops: Loops,
+    gaps: Vec<DVec3>,
     biases: Vec<LinkBias>,
     body_biases: Vec<BodyBias>,
     /// Force that a link's stage puts on its distal end, and takes from its proximal one.
@@ -64,10 +75,15 @@ pub struct LinkStages {
 }
 
 impl LinkStages {
-    /// For a tree made of a topology.
+    /// For a tree made of a topology; `tips_kg` are the masses of the tips of its closures.
     #[must_use]
-    pub fn new(tree: KinematicTree, topology: Topology, places: JointPlaces) -> Self {
-        let (links, bodies) = (tree.links, topology.bodies.len());
+    pub fn new(
+        tree: KinematicTree,
+        topology: Topology,
+        places: JointPlaces,
+        tips_kg: Vec<f64>,
+    ) -> Self {
+        let (links, bodies) = (tree.links, tree.carried_by.len());
         Self {
             g: 0.0,
             links: vec![ArticulatedLink::default(); links],
@@ -76,6 +92,10 @@ impl LinkStages {
             at_base: vec![Symmetric3::default(); bodies],
             blocks: vec![BodyBlock::ZERO; bodies],
             knots: vec![Carried::default(); bodies],
+            carried: vec![Symmetric3::default(); tree.limbs.len()],
+            loops: Loops::new(&tree, vec![1.0; tree.limbs.len()]),
+            gaps: vec![DVec3::ZERO; tree.closures.len()],
+            tips_kg,
             biases: vec![LinkBias::default(); links],
             body_biases: vec![BodyBias::default(); bodies],
             flows: vec![DVec3::ZERO; links],
@@ -90,6 +110,14 @@ impl LinkStages {
         }
     }
 
+    /// Whether a body turns; a tip does not.
+    fn turns(&self, body: usize) -> bool {
+        self.topology
+            .bodies
+            .get(body)
+            .is_some_and(|site| site.turns)
+    }
+
     /// Eliminates a limb and the body that it carries.
     fn factorise_limb(
         &mut self,
@@ -99,15 +127,15 @@ impl LinkStages {
     ) -> Result<(), NotSolvable> {
         let (limb, kind) = (&self.tree.limbs[index], &self.tree.kinds[index]);
         let g = self.g;
-        let (proximal, distal) = places(limb, derivatives);
+        let (proximal, distal) = self.places(limb, derivatives);
         let child = limb.child;
-        let turns = self.topology.bodies[child].turns;
-        let (body, inertia) = ArticulatedBody::new(&self.blocks[child], distal, turns);
+        let (body, inertia) = ArticulatedBody::new(&self.blocks[child], distal, self.turns(child));
         self.bodies[child] = body;
         let mut carried = Carried::from(inertia);
         if self.tree.knots[child] {
             carried = self.knots[child].plus(inertia);
         }
+        self.carried[index] = carried.total();
         for k in (0..limb.links.len()).rev() {
             let segment = &derivatives.segments[limb.segment(k)];
             let all = g * g * segment.geometric_n_m;
@@ -170,7 +198,7 @@ impl LinkStages {
             self.speeds[base] = self.base_twist(base, r_v);
         }
         for (index, limb) in self.tree.limbs.iter().enumerate() {
-            let (proximal, distal) = places(limb, derivatives);
+            let (proximal, distal) = self.places(limb, derivatives);
             let of = |motions: &[Twist]| {
                 limb.parent
                     .map_or(DVec3::ZERO, |body| proximal.motion(motions[body]))
@@ -195,21 +223,98 @@ impl LinkStages {
         for (load, (body, (shift, speed))) in self.body_loads.iter_mut().zip(bodies) {
             *load = body.stage_load(g, *shift, *speed);
         }
+        for (closure, kg) in self.tree.closures.iter().zip(&self.tips_kg) {
+            let tip = self.speeds[closure.tip].linear;
+            self.body_loads[closure.tip] = Twist {
+                linear: g * *kg * tip,
+                angular: DVec3::ZERO,
+            };
+            if let Some(body) = closure.onto {
+                let place = self.tie(closure.limb, derivatives);
+                let lent = place.load(g * *kg * place.motion(self.speeds[body]));
+                self.body_loads[body].linear -= lent.linear;
+                self.body_loads[body].angular -= lent.angular;
+            }
+        }
+    }
+
+    /// The place of the tip of a limb on the body that it is tied to.
+    fn tie(&self, limb: usize, derivatives: &Derivatives) -> Place {
+        ends(&self.tree.limbs[limb], derivatives).1
+    }
+
+    /// Places of a limb's proximal end on its parent, and of its distal end on the body or tip that it carries.
+    fn places(&self, limb: &Limb, derivatives: &Derivatives) -> (Place, Place) {
+        let (proximal, distal) = ends(limb, derivatives);
+        if limb.child < self.topology.bodies.len() {
+            (proximal, distal)
+        } else {
+            (proximal, CENTRE)
+        }
+    }
+
+    /// Takes the masses of tips from the bodies that they are tied to.
+    fn lend(&mut self, derivatives: &Derivatives) {
+        for (index, kg) in self.tips_kg.iter().enumerate() {
+            let closure = self.tree.closures[index];
+            self.blocks[closure.tip] = BodyBlock::point(*kg);
+            if let Some(body) = closure.onto {
+                let place = self.tie(closure.limb, derivatives);
+                let lent = BodyBlock::between(&place, DMat3::IDENTITY, &place);
+                self.blocks[body].add(&lent, -kg);
+            }
+        }
+    }
+
+    fn factorise_loops(&mut self, derivatives: &Derivatives) {
+        let factors = Factors {
+            links: &self.links,
+            bodies: &self.bodies,
+            at_base: &self.at_base,
+            carried: &self.carried,
+        };
+        let (tree, limbs) = (&self.tree, &self.tree.limbs);
+        self.loops.factorise(
+            tree,
+            &factors,
+            |limb| ends(&limbs[limb], derivatives).0,
+            |closure, _| ends(&limbs[tree.closures[closure].limb], derivatives).1,
+        );
+    }
+
+    /// Adds to V and X what the multipliers of the loops do: `self.motions` hold V of bodies and tips.
+    fn close_loops(&mut self, derivatives: &Derivatives, r_x: &mut [f64], r_v: &mut [f64]) {
+        for (index, gap) in self.gaps.iter_mut().enumerate() {
+            let wanted = self.g * self.loops.gap(index, &self.speeds);
+            *gap = self.loops.gap(index, &self.motions) - wanted;
+        }
+        self.loops.close(&self.gaps, None);
+        self.body_loads.fill(Twist::default());
+        self.flows.fill(DVec3::ZERO);
+        self.loads.fill(DVec3::ZERO);
+        self.loops.add_loads(&mut self.body_loads);
+        self.sweep_inward(derivatives);
+        let g = self.g;
+        self.sweep_outward(derivatives, |at, v| {
+            let x = DVec3::from_slice(&r_x[at..]) + g * v;
+            let v = DVec3::from_slice(&r_v[at..]) + v;
+            x.write_to_slice(&mut r_x[at..]);
+            v.write_to_slice(&mut r_v[at..]);
+        });
     }
 
     fn base_twist(&self, base: usize, r: &[f64]) -> Twist {
         let part = |at: Option<usize>| at.map_or(DVec3::ZERO, |at| DVec3::from_slice(&r[at..]));
         let (displacement, rotation) = self.places.bodies[base];
-        let turns = self.topology.bodies[base].turns;
         Twist {
             linear: part(displacement),
-            angular: part(rotation.filter(|_| turns)),
+            angular: part(rotation.filter(|_| self.turns(base))),
         }
     }
 
     fn sweep_inward(&mut self, derivatives: &Derivatives) {
         for limb in self.tree.limbs.iter().rev() {
-            let (proximal, _) = places(limb, derivatives);
+            let (proximal, _) = ends(limb, derivatives);
             let child = limb.child;
             let bias = self.bodies[child].inward(-self.body_loads[child], DVec3::ZERO);
             self.body_biases[child] = bias;
@@ -231,14 +336,8 @@ impl LinkStages {
         }
     }
 
-    /// Writes V and X of all joints.
-    fn sweep_outward(&mut self, derivatives: &Derivatives, r_x: &mut [f64], r_v: &mut [f64]) {
-        let g = self.g;
-        let mut take = |at: usize, v: DVec3| {
-            let x = g * (v + DVec3::from_slice(&r_x[at..]));
-            v.write_to_slice(&mut r_v[at..]);
-            x.write_to_slice(&mut r_x[at..]);
-        };
+    /// Hands over V of all joints with their places in the state.
+    fn sweep_outward(&mut self, derivatives: &Derivatives, mut take: impl FnMut(usize, DVec3)) {
         for &base in &self.tree.bases {
             let bias = self.bodies[base].inward(-self.body_loads[base], DVec3::ZERO);
             let motion = self.bodies[base].free(&bias, &self.at_base[base]);
@@ -252,7 +351,7 @@ impl LinkStages {
             }
         }
         for limb in &self.tree.limbs {
-            let (proximal, _) = places(limb, derivatives);
+            let (proximal, _) = ends(limb, derivatives);
             let mut at = limb
                 .parent
                 .map_or(DVec3::ZERO, |body| proximal.motion(self.motions[body]));
@@ -284,18 +383,22 @@ impl StageSolver for LinkStages {
             block.add(&body.damping, g);
             block.add(&body.stiffness, g * g);
         }
+        self.lend(derivatives);
         for index in (0..self.tree.limbs.len()).rev() {
             self.factorise_limb(index, derivatives, step_s)?;
         }
         for &base in &self.tree.bases {
-            let turns = self.topology.bodies[base].turns;
-            let (body, at_base) = ArticulatedBody::new(&self.blocks[base], CENTRE, turns);
+            let (body, at_base) =
+                ArticulatedBody::new(&self.blocks[base], CENTRE, self.turns(base));
             self.bodies[base] = body;
             self.at_base[base] = at_base;
             if !at_base.inverse().1 {
                 let index = self.places.bodies[base].0.unwrap_or(0);
                 return Err(NotSolvable { index });
             }
+        }
+        if !self.tree.closures.is_empty() {
+            self.factorise_loops(derivatives);
         }
         Ok(())
     }
@@ -305,7 +408,15 @@ impl StageSolver for LinkStages {
         let (r_v, r_s) = rest.split_at_mut(self.places.coordinates);
         self.load(derivatives, r_x, r_v);
         self.sweep_inward(derivatives);
-        self.sweep_outward(derivatives, r_x, r_v);
+        let g = self.g;
+        self.sweep_outward(derivatives, |at, v| {
+            let x = g * (v + DVec3::from_slice(&r_x[at..]));
+            v.write_to_slice(&mut r_v[at..]);
+            x.write_to_slice(&mut r_x[at..]);
+        });
+        if !self.tree.closures.is_empty() {
+            self.close_loops(derivatives, r_x, r_v);
+        }
         for r in r_s {
             *r *= self.g;
         }
@@ -315,9 +426,9 @@ impl StageSolver for LinkStages {
         for &base in &self.tree.bases {
             self.motions[base] = self.base_twist(base, change);
         }
-        let out = &mut self.displaced[of as usize];
+        let mut out = std::mem::take(&mut self.displaced[of as usize]);
         for limb in &self.tree.limbs {
-            let (proximal, distal) = places(limb, derivatives);
+            let (proximal, distal) = self.places(limb, derivatives);
             let line = &self.topology.lines[limb.line];
             let mut at = limb
                 .parent
@@ -337,6 +448,7 @@ impl StageSolver for LinkStages {
             motion.linear.write_to_slice(&mut out[..3]);
             motion.angular.write_to_slice(&mut out[3..]);
         }
+        self.displaced[of as usize] = out;
     }
 
     fn displaced<'a>(&'a self, _: &'a [f64], of: Change) -> &'a [f64] {
@@ -364,8 +476,8 @@ impl StageSolver for LinkStages {
     }
 }
 
-/// Places of a limb's proximal and distal end.
-fn places(limb: &Limb, derivatives: &Derivatives) -> (Place, Place) {
+/// Places of a limb's proximal and distal end on the bodies there.
+fn ends(limb: &Limb, derivatives: &Derivatives) -> (Place, Place) {
     let [from, to] = &derivatives.ends[limb.line];
     if limb.is_from_outward {
         (from.place, to.place)

@@ -3,6 +3,10 @@
 //!
 //! The base of bodies that an anchor holds is the anchor; of others it is one of them. Limbs stand in
 //! order: one that carries a body comes before those which that body carries.
+//!
+//! A tether by which a body, or an anchor, is reached a second time closes a loop. It is cut at that end: it
+//! becomes a limb that carries a *tip*, a point of its own, and a [`Closure`] says where the tip has to stay
+//! ([`super::loops`]). Tips stand after the bodies wherever there is a list of these.
 
 use std::ops::Range;
 
@@ -22,8 +26,19 @@ pub struct Limb {
     first_point: usize,
     /// The body that carries it; an anchor does if there is none.
     pub parent: Option<usize>,
-    /// The body that it carries.
+    /// The body, or tip, that it carries.
     pub child: usize,
+}
+
+/// A loop that is cut: the tip of a limb, and where it belongs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Closure {
+    /// The limb that carries the tip.
+    pub limb: usize,
+    /// The tip, among bodies.
+    pub tip: usize,
+    /// The body to which it is tied; an anchor if there is none.
+    pub onto: Option<usize>,
 }
 
 impl Limb {
@@ -84,34 +99,22 @@ pub struct KinematicTree {
     pub kinds: Vec<LinkKind>,
     /// Bodies that nothing carries.
     pub bases: Vec<usize>,
-    /// The limb that carries each body.
+    /// The limb that carries each body and each tip.
     pub carried_by: Vec<Option<usize>>,
     /// Of each body, whether it is a point between two limbs: it passes on what it carries as a joint between
     /// links does.
     pub knots: Vec<bool>,
     /// Number of links.
     pub links: usize,
-}
-
-/// Tethers that close a loop, as lines of the topology.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("tethers close a loop")]
-pub struct ClosedLoop {
-    /// The line by which a body is reached a second time.
-    pub line: usize,
+    /// The loops, in the order of their tips.
+    pub closures: Vec<Closure>,
 }
 
 impl KinematicTree {
     /// The tree of a topology: `kinds` by line, `preferred` the bodies that are to be bases, the first of
     /// a system first.
-    ///
-    /// # Errors
-    /// [`ClosedLoop`]; anchors count as one body.
-    pub fn new(
-        topology: &Topology,
-        kinds: &[LinkKind],
-        preferred: &[usize],
-    ) -> Result<Self, ClosedLoop> {
+    #[must_use]
+    pub fn new(topology: &Topology, kinds: &[LinkKind], preferred: &[usize]) -> Self {
         let mut growth = Growth {
             topology,
             used: vec![false; topology.lines.len()],
@@ -123,28 +126,29 @@ impl KinematicTree {
         };
         for (index, line) in topology.lines.iter().enumerate() {
             if line.from == End::Held || line.to == End::Held {
-                growth.grow_along(index, None)?;
+                growth.grow_along(index, None);
             }
         }
         // The limbs of anchors are grown level by level, then those of each free base.
-        growth.grow_from(0)?;
+        growth.grow_from(0);
         for body in preferred.iter().copied().chain(0..topology.bodies.len()) {
             if !growth.reached[body] {
                 growth.reached[body] = true;
                 growth.tree.bases.push(body);
                 let first = growth.tree.limbs.len();
-                growth.grow_beyond(body)?;
-                growth.grow_from(first)?;
+                growth.grow_beyond(body);
+                growth.grow_from(first);
             }
         }
         let mut tree = growth.tree;
         tree.kinds = tree.limbs.iter().map(|limb| kinds[limb.line]).collect();
         let is_knot = |body: usize| {
             let carries = tree.limbs.iter().filter(|limb| limb.parent == Some(body));
-            !topology.bodies[body].turns && tree.carried_by[body].is_some() && carries.count() == 1
+            let turns = topology.bodies.get(body).is_some_and(|site| site.turns);
+            !turns && tree.carried_by[body].is_some() && carries.count() == 1
         };
-        tree.knots = (0..topology.bodies.len()).map(is_knot).collect();
-        Ok(tree)
+        tree.knots = (0..tree.carried_by.len()).map(is_knot).collect();
+        tree
     }
 }
 
@@ -158,41 +162,40 @@ struct Growth<'a> {
 
 impl Growth<'_> {
     /// Grows beyond every limb from `first` on.
-    fn grow_from(&mut self, first: usize) -> Result<(), ClosedLoop> {
+    fn grow_from(&mut self, first: usize) {
         let mut next = first;
         while let Some(limb) = self.tree.limbs.get(next) {
-            self.grow_beyond(limb.child)?;
+            self.grow_beyond(limb.child);
             next += 1;
         }
-        Ok(())
     }
 
     /// Grows all limbs that a body carries.
-    fn grow_beyond(&mut self, body: usize) -> Result<(), ClosedLoop> {
+    fn grow_beyond(&mut self, body: usize) {
         let end = End::OnBody(body);
         for index in 0..self.topology.lines.len() {
             let line = &self.topology.lines[index];
             if !self.used[index] && (line.from == end || line.to == end) {
-                self.grow_along(index, Some(body))?;
+                self.grow_along(index, Some(body));
             }
         }
-        Ok(())
     }
 
-    /// Adds a tether that `parent` carries.
-    fn grow_along(&mut self, index: usize, parent: Option<usize>) -> Result<(), ClosedLoop> {
+    /// Adds a tether that `parent` carries, unless it has been added from its other end.
+    fn grow_along(&mut self, index: usize, parent: Option<usize>) {
         let line = self.topology.lines[index];
         let proximal = parent.map_or(End::Held, End::OnBody);
         let is_from_outward = line.from == proximal;
         let distal = if is_from_outward { line.to } else { line.from };
-        let End::OnBody(child) = distal else {
-            return Err(ClosedLoop { line: index });
+        let child = match distal {
+            End::OnBody(body) if !self.reached[body] => {
+                self.reached[body] = true;
+                body
+            }
+            End::OnBody(body) => self.tie_tip(Some(body)),
+            End::Held => self.tie_tip(None),
         };
-        if self.reached[child] {
-            return Err(ClosedLoop { line: index });
-        }
         self.used[index] = true;
-        self.reached[child] = true;
         let links = self.tree.links..self.tree.links + line.nodes + 1;
         self.tree.links = links.end;
         self.tree.carried_by[child] = Some(self.tree.limbs.len());
@@ -208,7 +211,15 @@ impl Growth<'_> {
             parent,
             child,
         });
-        Ok(())
+    }
+
+    /// A new tip for the limb that is about to be added, to be tied to a body or to an anchor.
+    fn tie_tip(&mut self, onto: Option<usize>) -> usize {
+        let tip = self.tree.carried_by.len();
+        self.tree.carried_by.push(None);
+        let limb = self.tree.limbs.len();
+        self.tree.closures.push(Closure { limb, tip, onto });
+        tip
     }
 }
 
@@ -264,7 +275,7 @@ mod tests {
                 (OnBody(3), OnBody(1)),
             ],
         );
-        let tree = KinematicTree::new(&t, &kinds(3), &[1]).expect("a tree");
+        let tree = KinematicTree::new(&t, &kinds(3), &[1]);
         assert_eq!(tree.bases, [1]);
         let order: Vec<_> = tree
             .limbs
@@ -287,13 +298,13 @@ mod tests {
     fn an_anchor_is_the_base_of_what_it_holds() {
         use End::{Held, OnBody};
         let t = topology(3, &[(OnBody(1), OnBody(0)), (OnBody(1), Held)]);
-        let tree = KinematicTree::new(&t, &kinds(2), &[0]).expect("a tree");
+        let tree = KinematicTree::new(&t, &kinds(2), &[0]);
         assert_eq!(tree.bases, [2]);
         assert_eq!(tree.carried_by, [Some(1), Some(0), None]);
     }
 
     #[test]
-    fn loops_are_refused_also_through_anchors() {
+    fn loops_are_cut_at_tips_also_through_anchors() {
         use End::{Held, OnBody};
         let ring = [
             (OnBody(0), OnBody(1)),
@@ -302,15 +313,24 @@ mod tests {
         ];
         let by_anchors = [(Held, OnBody(0)), (OnBody(0), OnBody(1)), (OnBody(1), Held)];
         let double = [(OnBody(0), OnBody(1)), (OnBody(0), OnBody(1))];
-        for (bodies, ends, line) in [
-            (3, &ring[..], 1),
-            (2, &by_anchors[..], 1),
-            (2, &double[..], 1),
-            (0, &[(Held, Held)][..], 0),
+        for (bodies, ends, line, onto) in [
+            (3, &ring[..], 1, Some(2)),
+            (2, &by_anchors[..], 1, Some(1)),
+            (2, &double[..], 1, Some(1)),
+            (0, &[(Held, Held)][..], 0, None),
         ] {
             let t = topology(bodies, ends);
-            let found = KinematicTree::new(&t, &kinds(ends.len()), &[]);
-            assert_eq!(found.map_err(|closed| closed.line).err(), Some(line));
+            let tree = KinematicTree::new(&t, &kinds(ends.len()), &[]);
+            let [closure] = tree.closures.as_slice() else {
+                panic!("one loop")
+            };
+            assert_eq!((closure.tip, closure.onto), (bodies, onto));
+            let limb = &tree.limbs[closure.limb];
+            assert_eq!((limb.line, limb.child), (line, closure.tip));
+            assert_eq!(tree.limbs.len(), ends.len());
+            let carried =
+                |body: usize| tree.bases.contains(&body) || tree.carried_by[body].is_some();
+            assert!((0..bodies).all(carried));
         }
     }
 }

@@ -29,7 +29,7 @@ impl BodyPlace {
 /// The places of all.
 #[derive(Clone, Debug, Default)]
 pub struct JointLayout {
-    /// Of each body.
+    /// Of each body and tip.
     pub bodies: Vec<BodyPlace>,
     /// Of the first link; three for each.
     pub first_link: usize,

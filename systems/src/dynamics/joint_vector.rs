@@ -7,10 +7,11 @@
 //!
 //! Read from components that the joints do not allow (a scene whose poses stretch a tether, a velocity that
 //! a plugin has set), links keep their directions, what nothing holds keeps its centre of mass, and momentum
-//! is conserved ([`crate::denoc::impulse`]).
+//! is conserved ([`crate::denoc::impulse`]). Closed loops are kept closed ([`closing`]).
 //!
-//! [`Origin`]: aerobot_components::state::Origin
+mod closing;
 
+use aerobot_components::state::Origin;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
 use glam::DVec3;
@@ -22,9 +23,10 @@ use super::rotation_chart::{exponential, rotation_rate};
 use super::state_space::{Layout, StateSpace};
 use super::tree_components::TreeComponents;
 use crate::denoc::articulated_link::Stretch;
+use crate::denoc::forward_dynamics::Accelerations;
 use crate::denoc::impulse::allowed_motion;
 use crate::denoc::joint_coordinates::LinkChart;
-use crate::denoc::kinematics::{LinkStates, PointState, sweep_outward};
+use crate::denoc::kinematics::{BodyState, LinkStates, PointState, sweep_outward};
 use crate::denoc::stage_system::JointPlaces;
 use crate::denoc::tree::LinkKind;
 use crate::fault::Fault;
@@ -42,6 +44,8 @@ pub struct JointVector {
     components: TreeComponents,
     first_order: FirstOrderStates,
     first_order_count: usize,
+    /// Scratch: a change that closes loops.
+    change: Accelerations,
 }
 
 impl JointVector {
@@ -67,6 +71,7 @@ impl JointVector {
             components: TreeComponents::new(world),
             first_order: FirstOrderStates::new(world),
             first_order_count,
+            change: world.resource::<LinkMechanism>().accelerations.clone(),
         }
     }
 
@@ -105,6 +110,7 @@ impl JointVector {
         let given = self.components.bodies.clone();
         let given_points = self.components.points.clone();
         self.sweep(mechanism);
+        self.close_at_start(mechanism);
         let mut base_of: Vec<Option<usize>> = vec![None; given.len()];
         for &base in &mechanism.tree.bases {
             base_of[base] = Some(base);
@@ -148,11 +154,18 @@ impl JointVector {
     fn take_impulses(&mut self, world: &World) {
         let mechanism = world.resource::<LinkMechanism>();
         let mut found = mechanism.accelerations.clone();
+        let mut dynamics = mechanism.dynamics.clone();
+        let offsets = &mechanism.entities.offsets;
+        let ties = self.components.ties.iter().zip(&offsets.ties_m);
+        let ties_m_s: Vec<DVec3> = ties
+            .map(|(anchor, offset_m)| anchor.place(*offset_m).velocity_m_s)
+            .collect();
         let allowed = allowed_motion(
             &mechanism.tree,
+            &mut dynamics,
             &self.links.span_m,
             (&self.components.points, &self.components.bodies),
-            &mechanism.entities.offsets,
+            (offsets, &ties_m_s),
             &mechanism.loads,
             &mut found,
         );
@@ -171,11 +184,25 @@ impl JointVector {
         sweep_outward(
             &mechanism.tree,
             &self.links,
-            &mechanism.entities.offsets,
+            &mechanism.entities.offsets.limbs,
             &self.components.anchors,
             &mut self.components.bodies,
             &mut self.components.points,
         );
+    }
+}
+
+/// Writes what coordinates a body has, but for its attitude, into coordinates and velocities.
+fn write_body(body: &BodyState, origin: &Origin, place: BodyPlace, state: &mut [f64]) {
+    let (coordinates, velocities) = state.split_at_mut(state.len() / 2);
+    if let BodyPlace::Base(at) = place {
+        (body.centre.position_m - origin.0).write_to_slice(&mut coordinates[at..]);
+        body.centre
+            .velocity_m_s
+            .write_to_slice(&mut velocities[at..]);
+    }
+    if let Some(at) = place.rotation() {
+        body.rate_rad_s.write_to_slice(&mut velocities[at..]);
     }
 }
 
@@ -211,17 +238,13 @@ impl StateSpace for JointVector {
         state.fill(0.0);
         for (index, origin, mut chart, ..) in self.components.body_query.iter_mut(world) {
             let body = &self.components.bodies[index.0];
-            let place = self.places.bodies[index.0];
             chart.0 = body.attitude;
-            if let BodyPlace::Base(at) = place {
-                (body.centre.position_m - origin.0).write_to_slice(&mut state[at..]);
-                body.centre
-                    .velocity_m_s
-                    .write_to_slice(&mut state[n + at..]);
-            }
-            if let Some(at) = place.rotation() {
-                body.rate_rad_s.write_to_slice(&mut state[n + at..]);
-            }
+            write_body(
+                body,
+                origin,
+                self.places.bodies[index.0],
+                &mut state[..2 * n],
+            );
         }
         let (rates, _) = state[n + self.places.first_link..2 * n].as_chunks_mut::<3>();
         for (out, rate) in rates.iter_mut().zip(&self.links.rate_m_s) {
@@ -304,18 +327,23 @@ impl StateSpace for JointVector {
         self.first_order.gather_rates(world, &mut rates[2 * n..]);
     }
 
-    fn recentre(&mut self, world: &mut World, state: &mut [f64], rates: &mut [f64]) {
+    fn recentre(&mut self, world: &mut World, state: &mut [f64], rates: &mut [f64]) -> bool {
         let n = self.places.coordinates;
-        for (index, _, mut chart, _, mut attitude, _, _) in
+        let is_changed = self.close_after_step(world);
+        for (index, origin, mut chart, _, mut attitude, _, _) in
             self.components.body_query.iter_mut(world)
         {
-            let Some(at) = self.places.bodies[index.0].rotation() else {
+            let body = &self.components.bodies[index.0];
+            let place = self.places.bodies[index.0];
+            if is_changed {
+                write_body(body, origin, place, &mut state[..2 * n]);
+            }
+            let Some(at) = place.rotation() else {
                 continue;
             };
-            let rotation = &mut state[at..at + 3];
-            chart.0 = (chart.0 * exponential(DVec3::from_slice(rotation))).normalize();
+            chart.0 = body.attitude.normalize();
             attitude.0 = chart.0;
-            rotation.fill(0.0);
+            state[at..at + 3].fill(0.0);
             rates[at..at + 3].copy_from_slice(&state[n + at..n + at + 3]);
         }
         let found = &world.resource::<LinkMechanism>().accelerations.span_m_s2;
@@ -331,6 +359,7 @@ impl StateSpace for JointVector {
             rate.write_to_slice(&mut rates[at..]);
             acceleration.write_to_slice(&mut rates[n + at..]);
         }
+        is_changed
     }
 
     fn error_scales(&mut self, world: &mut World) -> Vec<f64> {

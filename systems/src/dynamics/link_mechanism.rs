@@ -3,9 +3,12 @@
 use bevy_ecs::entity::Entity;
 use bevy_ecs::resource::Resource;
 
-use crate::denoc::forward_dynamics::{Accelerations, ForwardDynamics, Loads};
-use crate::denoc::kinematics::{BodyState, LimbOffsets, LinkStates};
+use super::rigid_body::CarriedMass;
+use crate::denoc::closed_dynamics::{ClosedDynamics, Offsets};
+use crate::denoc::forward_dynamics::{Accelerations, BodyLoad, Loads};
+use crate::denoc::kinematics::{BodyState, LinkStates};
 use crate::denoc::tree::KinematicTree;
+use crate::linearised_motion::body_block::BodyBlock;
 
 /// A tree with the entities that stand at its ends.
 #[derive(Clone, Debug, Default)]
@@ -16,10 +19,18 @@ pub struct TreeEntities {
     pub anchors: Vec<Option<Entity>>,
     /// The segment of each link, by its place in the tree.
     pub segments: Vec<Entity>,
-    /// Which bodies turn.
+    /// Which bodies, and tips, turn.
     pub turns: Vec<bool>,
-    /// Offsets of the ends of each limb.
-    pub offsets: Vec<LimbOffsets>,
+    /// Where tethers are attached.
+    pub offsets: Offsets,
+    /// The anchor of each closure that has one.
+    pub ties: Vec<Option<Entity>>,
+    /// Mass of the tip of each closure, kg.
+    pub tips_kg: Vec<f64>,
+    /// What each body has lent to tips, taken off what it carries: all of it is negative.
+    pub lent: Vec<CarriedMass>,
+    /// Compliance of each limb, m/N.
+    pub compliance_m_n: Vec<f64>,
     /// Number of tether points.
     pub points: usize,
 }
@@ -33,14 +44,14 @@ pub struct LinkMechanism {
     pub entities: TreeEntities,
     /// Spans and rates of the links.
     pub links: LinkStates,
-    /// Attitudes and motions of the bodies.
+    /// Attitudes and motions of bodies and tips.
     pub bodies: Vec<BodyState>,
     /// What acts.
     pub loads: Loads,
     /// What follows.
     pub accelerations: Accelerations,
     /// The recursion.
-    pub dynamics: ForwardDynamics,
+    pub dynamics: ClosedDynamics,
     /// Place in the tree of the link of a segment, by the index of the segment's first point.
     pub link_of_segment: Vec<usize>,
 }
@@ -55,12 +66,19 @@ impl LinkMechanism {
                 link_of_segment[limb.segment(k)] = limb.links.start + k;
             }
         }
+        let mut loads = Loads::new(&tree, entities.points);
+        for (closure, kg) in tree.closures.iter().zip(&entities.tips_kg) {
+            loads.bodies[closure.tip] = BodyLoad {
+                mass: BodyBlock::point(*kg),
+                ..BodyLoad::default()
+            };
+        }
         Self {
             links: LinkStates::default(),
-            bodies: vec![BodyState::default(); entities.bodies.len()],
-            loads: Loads::new(&tree, entities.points),
+            bodies: vec![BodyState::default(); tree.carried_by.len()],
+            loads,
             accelerations: Accelerations::new(&tree, entities.points),
-            dynamics: ForwardDynamics::new(&tree),
+            dynamics: ClosedDynamics::new(&tree, entities.compliance_m_n.clone()),
             link_of_segment,
             tree,
             entities,

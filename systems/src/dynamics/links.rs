@@ -14,7 +14,7 @@ use aerobot_components::tether::{Attachment, TetherNode, TetherPoint};
 use bevy_ecs::change_detection::DetectChangesMut;
 use bevy_ecs::query::{With, Without};
 use bevy_ecs::system::{Query, Res, ResMut};
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use super::link_mechanism::LinkMechanism;
 use super::rigid_body::CarriedMass;
@@ -37,10 +37,7 @@ pub fn mass_of(
 ) -> BodyBlock {
     let total = own.0 + added.0 + carried.mass_kg;
     match inertia {
-        None => BodyBlock {
-            linear: DMat3::from_diagonal(DVec3::splat(total)),
-            ..BodyBlock::ZERO
-        },
+        None => BodyBlock::point(total),
         Some(inertia) => BodyBlock::mass(
             total,
             carried.first_moment_kg_m,
@@ -88,16 +85,18 @@ pub fn solve_links(
     anchors: Query<&Acceleration>,
 ) {
     let mechanism = &mut *mechanism;
-    let loads = &mut mechanism.loads;
+    let (loads, entities) = (&mut mechanism.loads, &mechanism.entities);
     for (point, force) in &nodes {
         loads.point_n[point.index] = force.0;
     }
     for (index, (own, added, inertia, carried), motion, forces) in &bodies {
-        let mass = mass_of(own, added, inertia, carried, motion.0);
-        loads.bodies[index.0] = load_of(mass, (inertia, carried), motion, forces);
+        let carried = carried.plus(&entities.lent[index.0]);
+        let mass = mass_of(own, added, inertia, &carried, motion.0);
+        loads.bodies[index.0] = load_of(mass, (inertia, &carried), motion, forces);
     }
-    let held = loads.anchor_m_s2.iter_mut();
-    for (acceleration, anchor) in held.zip(&mechanism.entities.anchors) {
+    let limbs = loads.anchor_m_s2.iter_mut().zip(&entities.anchors);
+    let ties = loads.tie_m_s2.iter_mut().zip(&entities.ties);
+    for (acceleration, anchor) in limbs.chain(ties) {
         if let Some(found) = anchor.and_then(|anchor| anchors.get(anchor).ok()) {
             *acceleration = found.0;
         }

@@ -63,6 +63,16 @@ impl CarriedMass {
         let square = DMat3::from_diagonal(DVec3::splat(offset_m.length_squared()));
         self.inertia_kg_m2 += mass_kg * (square - outer);
     }
+
+    /// With all that `other` has besides.
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        Self {
+            mass_kg: self.mass_kg + other.mass_kg,
+            first_moment_kg_m: self.first_moment_kg_m + other.first_moment_kg_m,
+            inertia_kg_m2: self.inertia_kg_m2 + other.inertia_kg_m2,
+        }
+    }
 }
 
 /// Finds the added mass of every body that has one: coefficient x rho x V.

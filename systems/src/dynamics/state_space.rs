@@ -50,8 +50,8 @@ pub trait StateSpace: Send + Sync {
     fn gather_rates(&mut self, world: &mut World, state: &[f64], rates: &mut [f64]);
 
     /// Takes an accepted state, which was evaluated last, as the new centre of all charts, in `state` and
-    /// in `rates`.
-    fn recentre(&mut self, world: &mut World, state: &mut [f64], rates: &mut [f64]);
+    /// in `rates`. Whether the state itself was changed, to meet constraints, and has to be evaluated anew.
+    fn recentre(&mut self, world: &mut World, state: &mut [f64], rates: &mut [f64]) -> bool;
 
     /// The scale of an error in each part of the state that matters as much as 1 m.
     fn error_scales(&mut self, world: &mut World) -> Vec<f64>;

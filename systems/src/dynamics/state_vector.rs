@@ -128,7 +128,7 @@ impl StateSpace for StateVector {
         self.first_order.gather_rates(world, &mut rates[2 * n..]);
     }
 
-    fn recentre(&mut self, world: &mut World, state: &mut [f64], rates: &mut [f64]) {
+    fn recentre(&mut self, world: &mut World, state: &mut [f64], rates: &mut [f64]) -> bool {
         let n = self.layout.coordinates;
         for (index, _, mut chart, _, mut attitude, _, _) in self.bodies.iter_mut(world) {
             let rotation = &mut state[index.0 + 3..index.0 + 6];
@@ -138,6 +138,7 @@ impl StateSpace for StateVector {
             let velocity = n + index.0 + 3;
             rates[index.0 + 3..index.0 + 6].copy_from_slice(&state[velocity..velocity + 3]);
         }
+        false
     }
 
     fn error_scales(&mut self, world: &mut World) -> Vec<f64> {

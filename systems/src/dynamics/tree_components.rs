@@ -52,10 +52,12 @@ type Masses = (
 pub struct TreeComponents {
     /// By index of the tether point.
     pub points: Vec<PointState>,
-    /// By index of the body.
+    /// By index of the body; then of tips.
     pub bodies: Vec<BodyState>,
     /// Of each limb that has one.
     pub anchors: Vec<BodyState>,
+    /// Of each closure that has one.
+    pub ties: Vec<BodyState>,
     pub(super) body_query: QueryState<Bodies, Without<TetherNode>>,
     node_query: QueryState<Nodes, With<TetherNode>>,
     anchor_query: QueryState<Anchors>,
@@ -66,11 +68,12 @@ impl TreeComponents {
     /// Of the tree in the [`LinkMechanism`] of `world`.
     pub fn new(world: &mut World) -> Self {
         let mechanism = world.resource::<LinkMechanism>();
-        let (limbs, entities) = (mechanism.tree.limbs.len(), &mechanism.entities);
+        let (tree, points) = (&mechanism.tree, mechanism.entities.points);
         Self {
-            bodies: vec![BodyState::default(); entities.bodies.len()],
-            anchors: vec![BodyState::default(); limbs],
-            points: vec![PointState::default(); entities.points],
+            bodies: vec![BodyState::default(); tree.carried_by.len()],
+            anchors: vec![BodyState::default(); tree.limbs.len()],
+            ties: vec![BodyState::default(); tree.closures.len()],
+            points: vec![PointState::default(); points],
             body_query: world.query_filtered(),
             node_query: world.query_filtered(),
             anchor_query: world.query(),
@@ -98,8 +101,15 @@ impl TreeComponents {
         }
         self.read_anchors(world);
         let mechanism = world.resource::<LinkMechanism>();
+        let offsets = &mechanism.entities.offsets;
+        for (index, closure) in mechanism.tree.closures.iter().enumerate() {
+            let onto = closure
+                .onto
+                .map_or(&self.ties[index], |body| &self.bodies[body]);
+            self.bodies[closure.tip].centre = onto.place(offsets.ties_m[index]);
+        }
         for (index, limb) in mechanism.tree.limbs.iter().enumerate() {
-            let offsets = mechanism.entities.offsets[index];
+            let offsets = offsets.limbs[index];
             let parent = limb
                 .parent
                 .map_or(&self.anchors[index], |body| &self.bodies[body]);
@@ -112,8 +122,10 @@ impl TreeComponents {
     /// Where the anchors are at the time of the evaluation that is to come.
     pub fn read_anchors(&mut self, world: &World) {
         let time_s = world.resource::<Clock>().time_s;
-        let anchors = &world.resource::<LinkMechanism>().entities.anchors;
-        for (state, anchor) in self.anchors.iter_mut().zip(anchors) {
+        let entities = &world.resource::<LinkMechanism>().entities;
+        let limbs = self.anchors.iter_mut().zip(&entities.anchors);
+        let ties = self.ties.iter_mut().zip(&entities.ties);
+        for (state, anchor) in limbs.chain(ties) {
             let found = anchor.map(|anchor| self.anchor_query.get_manual(world, anchor));
             if let Some(Ok((path, position, velocity, attitude, rate))) = found {
                 let (position_m, velocity_m_s) = path.map_or((position.0, velocity.0), |path| {
@@ -155,9 +167,12 @@ impl TreeComponents {
 
     /// Gives the mechanism the masses of its bodies as they stand.
     pub fn read_masses(&mut self, world: &mut World) {
+        self.mass_query.update_archetypes(world);
         let mut masses = Vec::with_capacity(self.bodies.len());
-        for (index, mass, added, inertia, carried, attitude) in self.mass_query.iter(world) {
-            masses.push((index.0, mass_of(mass, added, inertia, carried, attitude)));
+        let lent = &world.resource::<LinkMechanism>().entities.lent;
+        for (index, mass, added, inertia, carried, attitude) in self.mass_query.iter_manual(world) {
+            let carried = carried.plus(&lent[index.0]);
+            masses.push((index.0, mass_of(mass, added, inertia, &carried, attitude)));
         }
         let mut mechanism = world.resource_mut::<LinkMechanism>();
         for (index, block) in masses {

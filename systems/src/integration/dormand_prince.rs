@@ -170,7 +170,7 @@ impl Integrator for DormandPrince {
         trajectory.cost.steps += 1;
         std::mem::swap(&mut trajectory.state, &mut self.trial);
         std::mem::swap(&mut trajectory.rates, &mut self.k[5]);
-        equations.accept(&mut trajectory.state, &mut trajectory.rates);
+        trajectory.accept(equations);
         Ok(())
     }
 }

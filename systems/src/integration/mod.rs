@@ -24,8 +24,9 @@ pub trait Equations {
     fn rates(&mut self, time_s: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Fault>;
 
     /// Called once for every accepted state, whose evaluation was the last one: attitudes are taken
-    /// as the new centres of their charts, in `state` and in `rates`.
-    fn accept(&mut self, state: &mut [f64], rates: &mut [f64]);
+    /// as the new centres of their charts, in `state` and in `rates`. Whether the state itself was changed,
+    /// to meet constraints, and has to be evaluated anew.
+    fn accept(&mut self, state: &mut [f64], rates: &mut [f64]) -> bool;
 
     /// Linearises the motion about the accepted state, whose evaluation was the last one.
     fn linearise(&mut self);
@@ -116,6 +117,12 @@ impl Trajectory {
     pub fn switch(&mut self) {
         self.rates_are_current = false;
         self.has_switched = true;
+    }
+
+    /// Tells the equations that the state, whose evaluation was the last one, is accepted.
+    fn accept(&mut self, equations: &mut dyn Equations) {
+        let is_changed = equations.accept(&mut self.state, &mut self.rates);
+        self.rates_are_current &= !is_changed;
     }
 
     /// Evaluates the rates of the current state unless they are known.

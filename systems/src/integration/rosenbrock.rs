@@ -201,7 +201,7 @@ impl Rosenbrock {
         trajectory.time_s = end_s;
         trajectory.cost.steps += 1;
         trajectory.cost.implicit_steps += 1;
-        equations.accept(&mut trajectory.state, &mut trajectory.rates);
+        trajectory.accept(equations);
     }
 
     fn step_fixed(

@@ -80,7 +80,7 @@ impl Integrator for RungeKutta4 {
         trajectory.time_s = end_s;
         trajectory.cost.steps += 1;
         trajectory.cost.evaluations += 4;
-        equations.accept(&mut trajectory.state, &mut trajectory.rates);
+        trajectory.accept(equations);
         Ok(())
     }
 }

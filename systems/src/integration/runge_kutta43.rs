@@ -103,7 +103,7 @@ impl Integrator for RungeKutta43 {
         trajectory.cost.steps += 1;
         std::mem::swap(&mut trajectory.state, &mut self.trial);
         std::mem::swap(&mut trajectory.rates, &mut self.k[3]);
-        equations.accept(&mut trajectory.state, &mut trajectory.rates);
+        trajectory.accept(equations);
         Ok(())
     }
 }

@@ -105,6 +105,15 @@ impl BodyBlock {
         }
     }
 
+    /// Mass matrix of a point, kg.
+    #[must_use]
+    pub fn point(mass_kg: f64) -> Self {
+        Self {
+            linear: DMat3::from_diagonal(DVec3::splat(mass_kg)),
+            ..Self::ZERO
+        }
+    }
+
     /// Mass matrix: `mass_kg` in all, the first moment of what is carried off the centre (kg m, body
     /// frame), and the inertia about the centre of mass (kg m^2, body frame).
     #[must_use]

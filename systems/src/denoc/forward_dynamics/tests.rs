@@ -53,7 +53,7 @@ impl Sample {
             joint_mass_kg: drawn.rod_kg,
             stretch: Stretch::Rigid,
         };
-        let tree = KinematicTree::new(&topology, &vec![kind; ropes.len()], &[]).expect("a tree");
+        let tree = KinematicTree::new(&topology, &vec![kind; ropes.len()], &[]);
         let mut sample = Self {
             links: LinkStates::default(),
             bodies: Vec::new(),

@@ -170,7 +170,7 @@ fn compare(
         joint_mass_kg: 0.0,
         stretch,
     };
-    let tree = KinematicTree::new(&topology, &vec![kind; lines.len()], &[]).unwrap();
+    let tree = KinematicTree::new(&topology, &vec![kind; lines.len()], &[]);
     let places = places(&tree, &topology);
     let [mut mass, damping, stiffness] = dense_matrices(&topology, &given);
     let g = GAMMA * STEP_S;
@@ -225,7 +225,7 @@ fn compare(
     }
     let ready = ready(&topology, &given);
     let n = places.coordinates;
-    let mut system = LinkStages::new(tree, topology, places);
+    let mut system = LinkStages::new(tree, topology, places, Vec::new());
     system.factorise(&ready, STEP_S, GAMMA).unwrap();
     let mut r: Vec<f64> = r_x.iter().chain(&r_v).copied().chain([2.0]).collect();
     system.solve(&ready, &mut r);
