@@ -116,3 +116,6 @@ pub fn gaps(
     })
     .collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -37,8 +37,8 @@ use crate::linearised_motion::body_block::{Place, Twist};
 
 /// eps, as a part of what makes it weigh as much as A.
 const BY_ENERGY: f64 = 1e-10;
-/// Added to the diagonal of A, as a part of it.
-const RIDGE: f64 = 1e-13;
+/// A pivot below this part of its diagonal is round-off.
+const DEPENDENT: f64 = 1e-14;
 const REFINEMENTS: usize = 3;
 
 /// A tip, and the place on a body where it belongs.
@@ -164,7 +164,6 @@ impl Loops {
                 let symmetric = 0.5 * (self.matrix[i * n + j] + self.matrix[j * n + i]);
                 factor[i * n + j] = symmetric + by_energy * weighed(i, j);
             }
-            factor[i * n + i] += RIDGE * diagonal(i);
         }
         self.by_energy = by_energy;
         self.factor = factor;
@@ -231,7 +230,7 @@ fn cholesky(a: &mut [f64], n: usize) {
         let row = &mut above[j * n..];
         let whole = row[j];
         let rest = whole - row[..j].iter().map(|v| v * v).sum::<f64>();
-        let pivot = if rest > 0.25 * RIDGE * whole {
+        let pivot = if rest > DEPENDENT * whole {
             rest.sqrt()
         } else {
             f64::INFINITY
