@@ -21,7 +21,7 @@ use aerobot_components::derivatives::TorqueDerivatives;
 use aerobot_components::state::{AngularVelocity, Attitude, Inertia, Torque};
 use aerobot_components::torsion::{AcceptedTwist, ClampedEnd, Torsion, Twist};
 use bevy_ecs::system::{Local, Query, Res, ResMut};
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 
 use super::line_twist::{HeldEnd, line_twist, with_turns};
 use crate::clock::Clock;
