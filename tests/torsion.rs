@@ -368,9 +368,8 @@ fn both_formulations_agree_on_a_stiff_line() {
         ]);
     }
     println!("{differences:?}");
-    for k in 0..2 {
-        assert!(differences[0][k] < 0.05);
-        assert!(differences[1][k] < 0.2 * differences[0][k]);
+    for (soft, stiff) in differences[0].iter().zip(&differences[1]) {
+        assert!(*soft < 0.05 && *stiff < 0.2 * *soft);
     }
 }
 
