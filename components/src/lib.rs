@@ -16,3 +16,4 @@ pub mod scene_component;
 pub mod segment;
 pub mod state;
 pub mod tether;
+pub mod torsion;

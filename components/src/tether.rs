@@ -6,6 +6,7 @@ use glam::DVec3;
 use serde::Deserialize;
 
 use crate::scene_component::{FieldReport, SceneComponent};
+use crate::torsion::TetherTorsion;
 
 /// A tether between two bodies or anchors: `nodes` interior point masses, `nodes` + 1 segments,
 /// numbered from 1 at `from`.
@@ -34,6 +35,9 @@ pub struct Tether {
     /// Drag of the line; none unless given.
     #[serde(default)]
     pub drag: Option<TetherDrag>,
+    /// Resistance of the line to being twisted; none unless given.
+    #[serde(default)]
+    pub torsion: Option<TetherTorsion>,
     /// Where the mass of the line goes.
     #[serde(default)]
     pub lumping: Lumping,
@@ -120,6 +124,9 @@ impl SceneComponent for Tether {
         if let Some(drag) = self.drag {
             report.non_negative("drag.normal", drag.normal);
             report.non_negative("drag.tangential", drag.tangential);
+        }
+        if let Some(torsion) = self.torsion {
+            report.within("torsion", |report| torsion.check(report));
         }
         for (field, end) in [("from", &self.from), ("to", &self.to)] {
             if let AttachmentPoint::Offset(x, y, z) = end.1 {
@@ -317,6 +324,7 @@ mod tests {
             axial_stiffness_n: 2e5,
             damping_n_s_m: 10.0,
             drag: None,
+            torsion: None,
             lumping,
             slack: true,
             start: TetherStart::Equilibrium,

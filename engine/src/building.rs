@@ -168,7 +168,13 @@ fn stable_step(
         return of_springs;
     }
     let springs = scene.run.elastic_links.then_some(&of_springs);
-    link_stable_step::find(world, linearisation, state, springs)
+    let of_links = link_stable_step::find(world, linearisation, state, springs);
+    let of_torsion = stable_step::by_torsion(world);
+    if of_torsion.step_s < of_links.step_s {
+        of_torsion
+    } else {
+        of_links
+    }
 }
 
 /// What a formulation counts motion in.

@@ -19,12 +19,14 @@ use aerobot_systems::instruments::energy::{
     KINETIC, MECHANICAL, POTENTIAL, WORK, WorkIntegral, energy, nonconservative_power,
 };
 use aerobot_systems::instruments::swing::{SWING, SWING_X, SWING_Y, Support, swing};
+use aerobot_systems::instruments::twist::{TORSION, TWIST, twist};
 use bevy_ecs::entity::Entity;
 use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::system::{IntoSystem, Res};
 use bevy_ecs::world::World;
 
 use super::recorder::Recorder;
+use super::torsion::has_torsion;
 use crate::plugin::{Plugin, Simulator};
 use crate::scene::source::nearest;
 use crate::scene::{Scene, SceneEntity, SetupError};
@@ -33,9 +35,10 @@ use crate::world::{SceneEntities, next_spawn_order};
 
 const BODY_CHANNELS: [&str; 6] = [AIRSPEED, TILT, HEADING, SWING, SWING_X, SWING_Y];
 const TETHER_CHANNELS: [&str; 2] = [TENSION_FROM, TENSION_TO];
+const TWISTED_TETHER_CHANNELS: [&str; 4] = [TENSION_FROM, TENSION_TO, TWIST, TORSION];
 const SYSTEM_CHANNELS: [&str; 4] = [KINETIC, POTENTIAL, MECHANICAL, WORK];
 
-/// Airspeed, tilt, heading, swing, attachment tensions and energy.
+/// Airspeed, tilt, heading, swing, attachment tensions, twist and energy.
 pub struct ChannelsPlugin;
 
 impl Plugin for ChannelsPlugin {
@@ -53,6 +56,7 @@ impl Plugin for ChannelsPlugin {
                     .pipe(attachment_tension)
                     .run_if(channels_due)
             })
+            .add_systems_if(Phase::Observe, has_torsion, || twist.run_if(channels_due))
             .add_systems_if(Phase::Observe, records_energy, || {
                 energy.run_if(channels_due)
             });
@@ -61,8 +65,12 @@ impl Plugin for ChannelsPlugin {
 
 /// The channels that exist on an entity of a scene.
 fn known_channels(entity: &SceneEntity) -> &'static [&'static str] {
-    if entity.has::<Tether>() {
-        &TETHER_CHANNELS
+    if let Some(tether) = entity.get::<Tether>() {
+        if tether.torsion.is_some() {
+            &TWISTED_TETHER_CHANNELS
+        } else {
+            &TETHER_CHANNELS
+        }
     } else if entity.has::<Body>() {
         &BODY_CHANNELS
     } else {
@@ -230,7 +238,11 @@ fn hanging(world: &World, parts: &TetherParts) -> Option<Hanging> {
 
 /// Whether a channel of this name is a built-in one.
 pub(crate) fn is_built_in(channel: &str) -> bool {
-    [&BODY_CHANNELS[..], &TETHER_CHANNELS, &SYSTEM_CHANNELS]
-        .iter()
-        .any(|channels| channels.contains(&channel))
+    [
+        &BODY_CHANNELS[..],
+        &TWISTED_TETHER_CHANNELS,
+        &SYSTEM_CHANNELS,
+    ]
+    .iter()
+    .any(|channels| channels.contains(&channel))
 }

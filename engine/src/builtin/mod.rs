@@ -8,6 +8,7 @@ pub mod links;
 pub mod recorder;
 pub mod slack_events;
 pub mod tethers;
+pub mod torsion;
 
 use crate::plugin::Simulator;
 use crate::schedule::Phase;
@@ -19,6 +20,7 @@ pub(crate) fn register(simulator: &mut Simulator) {
         .add_plugin(&bodies::BodiesPlugin)
         .add_plugin(&aerodynamics::AerodynamicsPlugin)
         .add_plugin(&tethers::TethersPlugin)
+        .add_plugin(&torsion::TorsionPlugin)
         .add_plugin(&bodies::MotionPlugin)
         .add_plugin(&links::LinksPlugin)
         .add_plugin(&channels::ChannelsPlugin)

@@ -19,8 +19,10 @@ mod snapshot;
 mod stability;
 mod steady;
 mod tethered_system;
+mod twists;
 
 pub(crate) use steady::{SteadySystem, settle};
+pub(crate) use twists::accept_twists;
 
 use aerobot_components::body::{Anchor, Pose};
 use aerobot_components::state::{
@@ -59,6 +61,7 @@ pub(crate) fn place(
     let bodies = bodies_without_pose(world, scene);
     let floating = guess::place_bodies(world, scene, &bodies)?;
     nodes::place_nodes(world);
+    twists::refer(world);
     let unplaced = Unplaced {
         bodies,
         floating,
@@ -68,6 +71,7 @@ pub(crate) fn place(
         equilibrium::solve(world, evaluation, scene, &unplaced)
     })?;
     place_given_nodes(world);
+    twists::refer_given(world, &unplaced.bodies);
     take_as_origin(world);
     Ok(())
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use aerobot_components::state::{Attitude, Inertia, Position};
 use aerobot_components::tether::{Attachment, Tether, TetherNode, TetherParts, TetherStart};
+use aerobot_components::torsion::Torsion;
 use aerobot_systems::nonlinear_solver::block_sparse::BlockPattern;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
@@ -105,16 +106,16 @@ pub(super) fn sites_here(world: &World, mut sites: Vec<Site>) -> Vec<Site> {
     sites
 }
 
-/// Pairs of sites that a segment joins.
+/// Pairs of sites that a segment joins, or a tether that one of them twists against the other.
 fn edges(world: &mut World, sites: &[Site]) -> Vec<(usize, usize)> {
     let places: BTreeMap<Entity, usize> = sites
         .iter()
         .enumerate()
         .map(|(place, site)| (site.entity, place))
         .collect();
-    let mut tethers = world.query::<&TetherParts>();
+    let mut tethers = world.query::<(&TetherParts, Option<&Torsion>)>();
     let mut edges = Vec::new();
-    for parts in tethers.iter(world) {
+    for (parts, torsion) in tethers.iter(world) {
         let place = |point: &Entity| {
             let owner = world
                 .get::<Attachment>(*point)
@@ -125,6 +126,13 @@ fn edges(world: &mut World, sites: &[Site]) -> Vec<(usize, usize)> {
             if let (Some(a), Some(b)) = (place(&pair[0]), place(&pair[1])) {
                 edges.push((a, b));
             }
+        }
+        let twisting = torsion.map(|torsion| [torsion.from.carrier, torsion.to.carrier]);
+        if let Some([Some(a), Some(b)]) =
+            twisting.map(|ends| ends.map(|end| places.get(&end).copied()))
+            && parts.points.len() > 2
+        {
+            edges.push((a, b));
         }
     }
     edges

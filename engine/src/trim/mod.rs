@@ -82,6 +82,8 @@ pub struct TrimmedTether {
     pub largest_tension_n: f64,
     /// The segment that carries it, from 1 at `from`.
     pub largest_segment: usize,
+    /// Twist of a tether that resists it, rad.
+    pub twist_rad: Option<f64>,
     /// Velocity of its nodes, inertial frame, m/s.
     pub velocity_m_s: DVec3,
     /// Positions of its interior nodes from `from` to `to`, inertial frame, m.
@@ -170,6 +172,7 @@ impl Simulation {
                 .scatter(world, &trajectory.state)
                 .and_then(|()| evaluation.run(world))
                 .map_err(|fault| not_evaluated(world, &fault))?;
+            placement::accept_twists(world);
             find_supports(world);
             Ok(report::report(world, &systems))
         })

@@ -7,6 +7,7 @@ use aerobot_components::state::{
     Velocity,
 };
 use aerobot_components::tether::{Tether, TetherNode, TetherParts};
+use aerobot_components::torsion::Twist;
 use aerobot_systems::clock::Clock;
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::instruments::attitude::{heading_rad, tilt_rad};
@@ -111,6 +112,7 @@ fn tether(world: &World, entity: Entity) -> Option<TrimmedTether> {
         )?,
         largest_tension_n,
         largest_segment,
+        twist_rad: world.get::<Twist>(entity).map(|twist| twist.twist_rad),
         velocity_m_s: world.get::<Velocity>(first)?.0,
         node_positions_m: nodes()
             .filter_map(|node| Some(world.get::<Position>(node)?.0))

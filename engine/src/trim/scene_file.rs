@@ -125,6 +125,10 @@ fn trimmed_text(
         if !tether.node_positions_m.is_empty() {
             edits.push(edit(&tether.name, &[Tether::NAME, "start"], &start(tether)));
         }
+        if let Some(twist_rad) = tether.twist_rad {
+            let fields = [Tether::NAME, "torsion", "twist_rad"];
+            edits.push(edit(&tether.name, &fields, &number(twist_rad)));
+        }
         push_motion(scene, &tether.name, tether.velocity_m_s, &mut edits);
     }
     for (path, table) in scene.tables.paths(&scene.environment) {

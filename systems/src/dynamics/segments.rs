@@ -3,6 +3,8 @@
 //! Segments read the points through flat arrays that are filled once per evaluation: two look-ups
 //! of entities per segment would cost as much as all of its arithmetic.
 
+use std::ops::Range;
+
 use aerobot_components::segment::{Segment, SegmentGeometry, SegmentLoad};
 use aerobot_components::state::{Force, Position, Velocity};
 use aerobot_components::tether::TetherPoint;
@@ -28,6 +30,19 @@ impl PointArrays {
             velocity_m_s: vec![DVec3::ZERO; count],
             load_n: vec![DVec3::ZERO; count],
         }
+    }
+
+    /// Positions (m) and velocities (m/s) of a range of points, inertial frame.
+    #[must_use]
+    pub fn motion_of(&self, points: Range<usize>) -> (&[DVec3], &[DVec3]) {
+        (&self.position_m[points.clone()], &self.velocity_m_s[points])
+    }
+
+    /// Loads (N, inertial frame) of the two ends of the segment that begins at `from_point`: what a law
+    /// adds here while forces are found reaches the points with the loads of
+    /// the segments.
+    pub fn loads_of_segment_n(&mut self, from_point: usize) -> &mut [DVec3] {
+        &mut self.load_n[from_point..from_point + 2]
     }
 
     /// Loads by point, N: zero between the systems that use them.

@@ -4,6 +4,8 @@
 
 pub mod body_drag;
 pub mod buoyancy;
+pub mod line_twist;
 pub mod segment_drag;
 pub mod spring;
+pub mod torsion;
 pub mod weight;

@@ -1,10 +1,10 @@
 //! Mechanical energy of the whole system and the work of non-conservative forces.
 //!
 //! E = sum 1/2 m v^2 + sum 1/2 omega' J omega (kinetic) + sum m phi(z) (gravity)
-//!   + sum 1/2 k (L - L0)^2 (elastic, taut segments).
+//!   + sum 1/2 k (L - L0)^2 (elastic, taut segments) + sum 1/2 (GJ / L) phi^2 (torsion).
 //!
-//! dW/dt = sum F.v + T.omega - m_a a.v over what is free to move, less the power of weight and
-//! springs: drag, buoyancy, dampers, added mass, moving anchors and a user's own forces. Then
+//! dW/dt = sum F.v + T.omega - m_a a.v over what is free to move, less the power of weight,
+//! springs and torsion: drag, buoyancy, dampers, added mass, moving anchors and a user's own forces. Then
 //! E(t) - E(0) = W(t) for exact motion; the difference measures the integration. Masses on anchors are
 //! left out.
 
@@ -18,7 +18,7 @@ use super::energy_sum::{AddedMass, EnergySum};
 
 /// Name of the channel of kinetic energy.
 pub const KINETIC: &str = "kinetic_energy_j";
-/// Name of the channel of potential energy, gravity and springs.
+/// Name of the channel of potential energy: gravity, springs and torsion.
 pub const POTENTIAL: &str = "potential_energy_j";
 /// Name of the channel of their sum.
 pub const MECHANICAL: &str = "mechanical_energy_j";
@@ -64,5 +64,6 @@ pub fn nonconservative_power(
     for spring in sum.springs() {
         power += spring.stiffness_n_m * spring.stretch_m * spring.rate_m_s;
     }
+    power += sum.torsion_potential_rate_w();
     work.rate_per_s = power;
 }

@@ -1,7 +1,7 @@
 //! Mechanical energy as the implicit integrator watches it: whether a step has made energy.
 //!
 //! As [`super::energy`], with the added mass in the kinetic energy, and the power of everything but
-//! weight and the tethers' axial forces. Dampers are left out: they can only take.
+//! weight and the tethers' axial forces and torsion. Dampers are left out: they can only take.
 
 use aerobot_components::segment::{SegmentGeometry, Tension};
 use bevy_ecs::system::Query;
@@ -19,6 +19,7 @@ pub fn mechanical_energy(
     for (tension, geometry) in &tensions {
         power_w += tension.0 * geometry.length_rate_m_s;
     }
+    power_w += sum.torsion_power_w();
     MechanicalEnergy {
         energy_j: kinetic_j + sum.potential_j(),
         kinetic_j,

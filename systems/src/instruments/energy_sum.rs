@@ -1,7 +1,7 @@
 //! Sums of energy and power over everything that is free to move.
 //!
 //! Kinetic: sum 1/2 m v^2 + sum 1/2 omega' J omega. Potential: sum m phi(z) + sum 1/2 k (L - L0)^2 over
-//! taut segments. Bodies and nodes count, and the masses that tethers put on bodies; masses on anchors
+//! taut segments + sum 1/2 (GJ / L) phi^2 of tethers that resist being twisted by phi. Bodies and nodes count, and the masses that tethers put on bodies; masses on anchors
 //! do not. Of a link that is a rod, half of whose mass m counts at each end, m/12 v^2 is taken off, v the
 //! velocity of one end against the other. Rigid links store nothing.
 
@@ -12,6 +12,7 @@ use aerobot_components::state::{
     StateIndex, Torque, Velocity,
 };
 use aerobot_components::tether::Attachment;
+use aerobot_components::torsion::{Torsion, Twist};
 use bevy_ecs::query::{QueryData, With, Without};
 use bevy_ecs::system::{Query, Res, SystemParam};
 
@@ -72,6 +73,7 @@ pub struct EnergySum<'w, 's> {
     >,
     anchors: Query<'w, 's, (), With<Anchor>>,
     segments: Query<'w, 's, (&'static KelvinVoigt, &'static SegmentGeometry), Without<RigidLink>>,
+    torsions: Query<'w, 's, (&'static Torsion, &'static Twist)>,
     links: Option<Res<'w, LinkMechanism>>,
 }
 
@@ -96,7 +98,7 @@ impl EnergySum<'_, '_> {
         kinetic_j + self.links.as_ref().map_or(0.0, |links| links.kinetic_j())
     }
 
-    /// Potential energy of gravity and springs, J.
+    /// Potential energy of gravity, springs and torsion, J.
     #[must_use]
     pub fn potential_j(&self) -> f64 {
         let gravity = self.environment.gravity;
@@ -109,6 +111,9 @@ impl EnergySum<'_, '_> {
         }
         for spring in self.springs() {
             potential_j += 0.5 * spring.stiffness_n_m * spring.stretch_m * spring.stretch_m;
+        }
+        for (torsion, twist) in &self.torsions {
+            potential_j += 0.5 * torsion.stiffness_n_m * twist.twist_rad * twist.twist_rad;
         }
         potential_j
     }
@@ -157,6 +162,25 @@ impl EnergySum<'_, '_> {
                 rate_m_s: geometry.length_rate_m_s,
             }
         })
+    }
+
+    /// Power that goes into the potential of torsion, W.
+    #[must_use]
+    pub fn torsion_potential_rate_w(&self) -> f64 {
+        let rates = self
+            .torsions
+            .iter()
+            .map(|(torsion, twist)| torsion.stiffness_n_m * twist.twist_rad * twist.rate_rad_s);
+        rates.sum()
+    }
+
+    /// Power that torsion takes, its damping included, W.
+    #[must_use]
+    pub fn torsion_power_w(&self) -> f64 {
+        let taken = self.torsions.iter();
+        taken
+            .map(|(_, twist)| twist.torque_n_m * twist.rate_rad_s)
+            .sum()
     }
 
     /// The masses of tethers that are carried by what is free to move.

@@ -11,6 +11,7 @@ pub mod runge_kutta43;
 pub mod stability;
 pub mod stable_step;
 pub mod step_control;
+pub mod torsional_modes;
 
 use crate::fault::Fault;
 

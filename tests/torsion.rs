@@ -1,0 +1,512 @@
+//! Tethers that resist being twisted: torsional pendulums, turns, what they conserve, and both formulations.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
+mod flight;
+
+use aerobot::engine::plugin::Simulator;
+use aerobot::engine::recording::frame::MemorySink;
+use aerobot::engine::trim::scene_file::write_trimmed_scene;
+use flight::{assert_below, fly, largest_distance_m, load, summary_of};
+use glam::DVec3;
+
+/// A body on one tether from an anchor, with Izz = 0.4 kg m^2 and GJ/L = 0.1 N m.
+fn pendulum(torsion: &str, body: &str, run: &str, overrides: &[&str]) -> MemorySink {
+    fly(&pendulum_text(torsion, body, run), overrides)
+}
+
+fn pendulum_text(torsion: &str, body: &str, run: &str) -> String {
+    format!(
+        r#"(
+        name: "torsional-pendulum",
+        environment: (atmosphere: Vacuum),
+        entities: {{
+            "top": (Fixed: (position_m: (0, 0, 100), attitude: YawPitchRoll(yaw_rad: 0.7, pitch_rad: 0, roll_rad: 0))),
+            "load": (
+                Body: (mass_kg: 5, inertia: Tensor(xx_kg_m2: 0.3, yy_kg_m2: 0.35, zz_kg_m2: 0.4)),
+                {body}
+            ),
+            "line": (Tether: (
+                from: ("top", Centre), to: ("load", (0, 0, 0.2)), length_m: 5, nodes: 3, diameter_m: 0.004,
+                density_kg_m3: 1440, axial_stiffness_n: 2e4, damping_n_s_m: 20,
+                torsion: (stiffness_n_m2: 0.5, {torsion}),
+            )),
+        }},
+        run: (duration_s: 40, output_every_s: 0.25, record: (channels: All), {run}),
+    )"#
+    )
+}
+
+const POSE: &str = "Pose: (position_m: (0, 0, 94.79)),";
+const TIGHT: &str = "integrator: Adaptive(relative_tolerance: 1e-11)";
+
+fn largest_error(samples: &[(f64, f64)], expected: impl Fn(f64) -> f64) -> f64 {
+    assert!(samples.len() > 4);
+    samples
+        .iter()
+        .map(|(time_s, value)| (value - expected(*time_s)).abs())
+        .fold(0.0, f64::max)
+}
+
+/// phi(t) = phi_0 cos(omega t), omega^2 = GJ / (L Izz): linear at any amplitude, here nearly three turns.
+#[test]
+fn a_body_on_one_tether_is_a_torsional_pendulum() {
+    for start_rad in [0.3, 18.0] {
+        let results = pendulum(&format!("twist_rad: {start_rad}"), POSE, TIGHT, &[]);
+        let omega = (0.5_f64 / 5.0 / 0.4).sqrt();
+        let error = largest_error(&results.channel("line", "twist_rad"), |t| {
+            start_rad * (omega * t).cos()
+        });
+        assert_below("twist, rad", error, 1e-8);
+        let error = largest_error(&results.channel("line", "torsion_n_m"), |t| {
+            0.1 * start_rad * (omega * t).cos()
+        });
+        assert_below("torque, N m", error, 1e-9);
+    }
+}
+
+/// The same with damping: exponents -c/(2 Izz) +- i sqrt(omega^2 - (c/(2 Izz))^2).
+#[test]
+fn damping_takes_the_twist_away_at_its_rate() {
+    let results = pendulum("damping_n_m_s: 0.08, twist_rad: 0.5", POSE, TIGHT, &[]);
+    let decay = 0.08 / (2.0 * 0.4);
+    let omega = (0.25_f64 - decay * decay).sqrt();
+    let error = largest_error(&results.channel("line", "twist_rad"), |t| {
+        0.5 * (-decay * t).exp() * ((omega * t).cos() + decay / omega * (omega * t).sin())
+    });
+    assert_below("twist, rad", error, 1e-8);
+}
+
+/// A body that spins at 25 rad/s winds the line up by 50 rad and back; every integrator counts the turns,
+/// in either formulation.
+#[test]
+fn many_turns_are_followed() {
+    let spin = format!("{POSE} Motion: (rate_rad_s: (0, 0, 25)),");
+    for (integrator, bound) in [
+        ("integrator: Auto(accuracy_m: 1e-4)", 0.05),
+        ("integrator: Implicit(accuracy_m: 1e-4)", 0.05),
+        (TIGHT, 1e-6),
+    ] {
+        for formulation in ["LumpedMass", "Denoc"] {
+            let run = format!("{integrator}, formulation: {formulation}");
+            let results = pendulum("", &spin, &run, &["run.duration_s=13"]);
+            let error = largest_error(&results.channel("line", "twist_rad"), |t| {
+                -50.0 * (0.5 * t).sin()
+            });
+            assert_below(&run, error, bound);
+        }
+    }
+}
+
+/// Two bodies on a tether in free space: omega^2 = (GJ/L) (1/I_1 + 1/I_2) about the line.
+#[test]
+fn two_bodies_turn_against_each_other() {
+    let (results, _) = free_pair(
+        "stiffness_n_m2: 0.5, twist_rad: 0.4",
+        "duration_s: 20, output_every_s: 0.1",
+        TIGHT,
+    );
+    let omega = (0.5_f64 / 4.0 * (1.0 / 0.3 + 1.0 / 0.7)).sqrt();
+    let error = largest_error(&results.channel("line", "twist_rad"), |t| {
+        0.4 * (omega * t).cos()
+    });
+    assert_below("twist, rad", error, 1e-8);
+}
+
+fn free_pair(torsion: &str, times: &str, integrator: &str) -> (MemorySink, u64) {
+    let (results, summary) = summary_of(
+        &format!(
+            r#"(
+        name: "pair", environment: (gravity: Constant(0), atmosphere: Vacuum),
+        entities: {{
+            "a": (
+                Body: (mass_kg: 3, inertia: Tensor(xx_kg_m2: 0.3, yy_kg_m2: 0.5, zz_kg_m2: 0.6)),
+                Pose: (position_m: (0, 0, 0)),
+            ),
+            "b": (
+                Body: (mass_kg: 4, inertia: Tensor(xx_kg_m2: 0.7, yy_kg_m2: 0.8, zz_kg_m2: 0.9)),
+                Pose: (position_m: (4, 0, 0)), Motion: (rate_rad_s: (0, 0, 0)),
+            ),
+            "line": (Tether: (
+                from: ("a", Centre), to: ("b", Centre), length_m: 4, nodes: 0, axial_stiffness_n: 100,
+                slack: false, torsion: ({torsion}),
+            )),
+        }},
+        run: ({times}, record: (channels: All), {integrator}),
+    )"#
+        ),
+        &[],
+    );
+    (results, summary.steps)
+}
+
+/// Two tethers side by side, twisted: omega^2 = (m g a^2 / L + 2 GJ / L_0) / Izz, a half their distance, L
+/// their length under load; small angles. The body has no pose: it hangs untwisted.
+#[test]
+fn torsion_adds_to_a_bifilar_pendulum() {
+    let (mass, half, length, ea, gj, izz) = (10.0, 0.5, 2.0, 1e6, 4.0, 1.5);
+    let line = |x: f64| {
+        format!(
+            r#"Tether: (
+                from: ("top", ({x}, 0, 0)), to: ("load", ({x}, 0, 0.1)), length_m: {length}, nodes: 0,
+                axial_stiffness_n: {ea}, torsion: (stiffness_n_m2: {gj}),
+            ),"#
+        )
+    };
+    let results = fly(
+        &format!(
+            r#"(
+        name: "bifilar", environment: (atmosphere: Vacuum),
+        entities: {{
+            "top": (Fixed: (position_m: (0, 0, 50))),
+            "load": (
+                Body: (mass_kg: {mass}, inertia: Tensor(xx_kg_m2: 1, yy_kg_m2: 1.2, zz_kg_m2: {izz})),
+                Motion: (rate_rad_s: (0, 0, 0.003)),
+            ),
+            "left": ({}),
+            "right": ({}),
+        }},
+        run: (duration_s: 6, output_every_s: 0.05, record: (channels: All), {TIGHT}),
+    )"#,
+            line(-half),
+            line(half)
+        ),
+        &[],
+    );
+    let loaded = length * (1.0 + 0.5 * mass * 8.87 / ea);
+    let gravity = mass * 8.87 * half * half / loaded;
+    let omega = ((gravity + 2.0 * gj / length) / izz).sqrt();
+    let amplitude = 0.003 / omega;
+    let error = largest_error(&results.channel("load", "heading_rad"), |t| {
+        amplitude * (omega * t).sin()
+    });
+    assert_below("heading, of its amplitude", error / amplitude, 1e-5);
+}
+
+/// Two tumbling bodies on a line that whips through all shapes, with nothing around.
+fn wild_pair(torsion: &str, run: &str) -> MemorySink {
+    fly(
+        &format!(
+            r#"(
+        name: "wild", environment: (gravity: Constant(0), atmosphere: Vacuum),
+        entities: {{
+            "a": (
+                Body: (mass_kg: 3, inertia: Tensor(xx_kg_m2: 0.5, yy_kg_m2: 0.8, zz_kg_m2: 1.1)),
+                Pose: (position_m: (-3, 0, 0)),
+                Motion: (velocity_m_s: (0.2, -2, 0.3), rate_rad_s: (0.4, -0.7, 0.9)),
+            ),
+            "b": (
+                Body: (mass_kg: 5, inertia: Tensor(xx_kg_m2: 1.5, yy_kg_m2: 0.9, zz_kg_m2: 1.2)),
+                Pose: (position_m: (1.9, 0, 0)),
+                Motion: (velocity_m_s: (0.1, 1.5, -0.4), rate_rad_s: (-0.6, 0.5, 1.2)),
+            ),
+            "line": (
+                Tether: (
+                    from: ("a", (0.3, 0.1, -0.2)), to: ("b", (-0.4, 0.2, 0.15)), length_m: 4, nodes: 3,
+                    diameter_m: 0.016, density_kg_m3: 1000, axial_stiffness_n: 2000,
+                    slack: false, start: Straight, torsion: (stiffness_n_m2: 4, {torsion}),
+                ),
+                Motion: (velocity_m_s: (0, 0, 3)),
+            ),
+        }},
+        run: (duration_s: 5, output_every_s: 0.05, record: (channels: All), {run}),
+    )"#
+        ),
+        &[],
+    )
+}
+
+/// Largest departure of mechanical energy less work from its start, J.
+fn imbalance_j(results: &MemorySink) -> f64 {
+    let energy = results.channel("system", "mechanical_energy_j");
+    let work = results.channel("system", "nonconservative_work_j");
+    assert!(!energy.is_empty() && energy.len() == work.len());
+    let start = energy[0].1 - work[0].1;
+    energy
+        .iter()
+        .zip(&work)
+        .map(|(energy, work)| (energy.1 - work.1 - start).abs())
+        .fold(0.0, f64::max)
+}
+
+/// Linear momentum (kg m/s) and angular momentum about the origin (kg m^2/s): bodies, nodes, and the half
+/// segments of the line that bodies carry.
+fn momenta(results: &MemorySink, index: usize) -> (DVec3, DVec3) {
+    let frame = &results.frames[index];
+    let row = |name: &str| {
+        let mut rows = frame.states.iter();
+        rows.find(|row| &*row.entity == name).expect("a row")
+    };
+    let line_kg = 1000.0 * 4.0 * std::f64::consts::PI * 0.008 * 0.008;
+    let (mut linear, mut angular) = (DVec3::ZERO, DVec3::ZERO);
+    let mut add = |mass: f64, place: DVec3, velocity: DVec3| {
+        linear += mass * velocity;
+        angular += place.cross(mass * velocity);
+    };
+    for node in ["line/1", "line/2", "line/3"] {
+        let row = row(node);
+        add(line_kg / 4.0, row.position_m, row.velocity_m_s);
+    }
+    let mut spin = DVec3::ZERO;
+    for (name, mass, inertia, offset) in [
+        (
+            "a",
+            3.0,
+            DVec3::new(0.5, 0.8, 1.1),
+            DVec3::new(0.3, 0.1, -0.2),
+        ),
+        (
+            "b",
+            5.0,
+            DVec3::new(1.5, 0.9, 1.2),
+            DVec3::new(-0.4, 0.2, 0.15),
+        ),
+    ] {
+        let row = row(name);
+        let (attitude, rate) = row.rotation.expect("a body turns");
+        add(mass, row.position_m, row.velocity_m_s);
+        let arm = attitude * offset;
+        let turning = attitude * rate.cross(offset);
+        add(
+            line_kg / 8.0,
+            row.position_m + arm,
+            row.velocity_m_s + turning,
+        );
+        spin += attitude * (inertia * rate);
+    }
+    (linear, angular + spin)
+}
+
+/// Forces on nodes and torques on bodies are the gradient of one potential that no rigid motion changes: on
+/// a line that whips and twists, energy and both momenta stay.
+#[test]
+fn a_wild_line_keeps_energy_and_momenta() {
+    let results = wild_pair(
+        "twist_rad: 3",
+        "integrator: Adaptive(relative_tolerance: 1e-12)",
+    );
+    let torques = results.channel("line", "torsion_n_m");
+    let largest = torques
+        .iter()
+        .map(|sample| sample.1.abs())
+        .fold(0.0, f64::max);
+    let twists = results.channel("line", "twist_rad");
+    let (least, most) = twists
+        .iter()
+        .fold((f64::MAX, f64::MIN), |(least, most), sample| {
+            (least.min(sample.1), most.max(sample.1))
+        });
+    println!("torque up to {largest:.2} N m, twist from {least:.2} to {most:.2} rad");
+    assert!(largest > 2.0 && most - least > 2.0);
+    assert_below("energy, J", imbalance_j(&results), 1e-8);
+    let start = momenta(&results, 0);
+    for index in 0..results.frames.len() {
+        let now = momenta(&results, index);
+        assert!((now.0 - start.0).length() < 1e-10, "linear, row {index}");
+        assert!((now.1 - start.1).length() < 1e-9, "angular, row {index}");
+    }
+}
+
+/// What torsional damping takes is the work that is recorded; of lumped masses and of links.
+#[test]
+fn damping_takes_what_is_missing_from_the_energy() {
+    let tight = "integrator: Adaptive(relative_tolerance: 1e-10)";
+    for run in [
+        tight.to_owned(),
+        format!("{tight}, formulation: Denoc, links: Rod"),
+        format!("{tight}, formulation: Denoc, links: PointMass"),
+        format!("{tight}, formulation: Denoc, elastic_links: true"),
+    ] {
+        let results = pendulum(
+            "damping_n_m_s: 0.05, twist_rad: 4",
+            "Pose: (position_m: (2.5, 0, 95.47)), Motion: (velocity_m_s: (0, 1, 0), rate_rad_s: (0.1, 0, 2)),",
+            &run,
+            &["run.duration_s=1.5", "entities.line.Tether.damping_n_s_m=0"],
+        );
+        let work = results.channel("system", "nonconservative_work_j");
+        let work = work[work.len() - 1].1;
+        println!("{run}: work {work:.3} J");
+        assert!(work < -0.1, "{work}");
+        assert_below("energy less work, J", imbalance_j(&results), 1e-8);
+    }
+}
+
+/// A swinging, twisting line of lumped masses tends to that of links as it gets stiff.
+#[test]
+fn both_formulations_agree_on_a_stiff_line() {
+    let fly = |overrides: &[&str]| {
+        let mut all = vec![
+            "run.duration_s=2",
+            "entities.line.Tether.lumping=Interior",
+            "run.links=PointMass",
+            "entities.line.Tether.start=Straight",
+        ];
+        all.extend(overrides);
+        pendulum(
+            "twist_rad: 4",
+            "Pose: (position_m: (1.4, 0, 95)), Motion: (velocity_m_s: (0, 1, 0)),",
+            "integrator: Implicit(accuracy_m: 1e-5)",
+            &all,
+        )
+    };
+    let links = fly(&["run.formulation=Denoc"]);
+    let mut differences = Vec::new();
+    for stiffness in ["2e5", "2e6"] {
+        let ea = format!("entities.line.Tether.axial_stiffness_n={stiffness}");
+        let lumped = fly(&[&ea]);
+        let twist = links.channel("line", "twist_rad");
+        let other = lumped.channel("line", "twist_rad");
+        let apart = twist.iter().zip(&other).map(|(a, b)| (a.1 - b.1).abs());
+        differences.push([
+            largest_distance_m(&links, &lumped),
+            apart.fold(0.0, f64::max),
+        ]);
+    }
+    println!("{differences:?}");
+    for (soft, stiff) in differences[0].iter().zip(&differences[1]) {
+        assert!(*soft < 0.05 && *stiff < 0.2 * *soft);
+    }
+}
+
+/// A torsion stiff against everything else costs an implicit step nothing: on an anchor, and between two
+/// free bodies.
+#[test]
+fn stiff_torsion_costs_no_implicit_steps() {
+    let stiff = [
+        "entities.line.Tether.torsion.stiffness_n_m2=1e7",
+        "run.duration_s=20",
+    ];
+    for formulation in ["LumpedMass", "Denoc"] {
+        let text = pendulum_text(
+            "damping_n_m_s: 100",
+            &format!("{POSE} Motion: (rate_rad_s: (0, 0, 0.01)),"),
+            &format!("integrator: Implicit(accuracy_m: 1e-3), formulation: {formulation}"),
+        );
+        let (results, summary) = summary_of(&text, &stiff);
+        let twist = results.channel("line", "twist_rad");
+        let largest = twist
+            .iter()
+            .map(|sample| sample.1.abs())
+            .fold(0.0, f64::max);
+        println!(
+            "{formulation}: {} steps, twist up to {largest:.1e} rad",
+            summary.steps
+        );
+        assert!(summary.steps < 2000 && largest < 1e-4);
+    }
+    let (results, steps) = free_pair(
+        "stiffness_n_m2: 1e7, twist_rad: 1e-6",
+        "duration_s: 20, output_every_s: 1",
+        "integrator: Implicit(accuracy_m: 1e-3)",
+    );
+    println!("free pair: {steps} steps");
+    let heading = results.channel("line", "twist_rad");
+    let last = heading[heading.len() - 1].1;
+    assert!(
+        steps < 2000 && last.abs() < 1e-6,
+        "{steps} steps, {last} rad"
+    );
+}
+
+/// The stable step of RK4 knows the torsion, and says so: omega = sqrt(GJ / (L Izz)), 2 sqrt(2) / omega.
+#[test]
+fn the_stable_step_knows_the_torsion() {
+    let simulator = Simulator::new();
+    let text = pendulum_text("", POSE, "integrator: Fixed(method: RungeKutta4)");
+    let stiff = "entities.line.Tether.torsion.stiffness_n_m2=2e7";
+    for formulation in ["LumpedMass", "Denoc"] {
+        let overrides = [
+            stiff,
+            "entities.line.Tether.axial_stiffness_n=200",
+            "entities.line.Tether.damping_n_s_m=0",
+            &format!("run.formulation={formulation}")[..],
+        ];
+        let scene = load(&simulator, &text, &overrides);
+        let simulation = simulator
+            .build(&scene)
+            .unwrap_or_else(|error| panic!("{error}"));
+        let stable = simulation.stable_step();
+        let expected = 8.0_f64.sqrt() / (2e7_f64 / 5.0 / 0.4).sqrt();
+        assert!(
+            (stable.step_s / expected - 1.0).abs() < 0.06,
+            "{stable:?} {expected}"
+        );
+        assert!(stable.step_s <= expected * 1.001, "{stable:?} {expected}");
+        assert!(
+            stable.segment.starts_with("line") || stable.segment == "load",
+            "{stable:?}"
+        );
+    }
+}
+
+/// What has no pose hangs untwisted: a line that is clamped with a twist turns the body by it.
+#[test]
+fn a_body_without_a_pose_hangs_untwisted() {
+    for (twist, turned) in [("", 0.0), ("twist_rad: 0.5", 0.5)] {
+        let results = pendulum(twist, "", TIGHT, &["run.duration_s=1"]);
+        let heading = results.channel("load", "heading_rad")[0].1;
+        assert_below("heading, rad", (heading - turned).abs(), 1e-7);
+        let error = largest_error(&results.channel("line", "twist_rad")[..], |_| 0.0);
+        assert_below("twist, rad", error, 1e-7);
+    }
+}
+
+/// Trim finds where the twists of two lines balance, and the scene that it writes stays there.
+#[test]
+fn a_trimmed_scene_keeps_its_twist() {
+    let line = |x: f64, twist: f64| {
+        format!(
+            r#"Tether: (
+                from: ("top", ({x}, 0, 0)), to: ("load", ({x}, 0, 0.1)), length_m: 20, nodes: 3,
+                diameter_m: 0.002, density_kg_m3: 1440, axial_stiffness_n: 1e5, damping_n_s_m: 20,
+                drag: (normal: 1, tangential: 0.03),
+                torsion: (stiffness_n_m2: 4, damping_n_m_s: 0.1, twist_rad: {twist}),
+            ),"#
+        )
+    };
+    let text = format!(
+        r#"(
+        name: "bifilar", environment: (atmosphere: Vira, wind: [Uniform(velocity_m_s: (2, 1, 0))]),
+        entities: {{
+            "top": (Fixed: (position_m: (0, 0, 55000))),
+            "load": (
+                Body: (mass_kg: 10, inertia: Box(1, 1.5, 0.5)),
+                Drag: Constant(coefficient: 1, area_m2: 0.3),
+            ),
+            "left": ({}),
+            "right": ({}),
+        }},
+        run: (duration_s: 3, output_every_s: 0.5, record: (channels: All)),
+    )"#,
+        line(-0.5, 8.0),
+        line(0.5, 0.0)
+    );
+    let simulator = Simulator::new();
+    let scene = load(&simulator, &text, &[]);
+    let mut simulation = simulator
+        .build(&scene)
+        .unwrap_or_else(|error| panic!("{error}"));
+    let trim = simulation
+        .trim(&scene)
+        .unwrap_or_else(|error| panic!("{error}"));
+    let [left, right] = ["left", "right"].map(|name| trim.tether(name).unwrap().twist_rad.unwrap());
+    let heading = trim.body("load").unwrap().heading_rad;
+    println!("twists {left:.4}, {right:.4} rad, heading {heading:.4} rad");
+    assert!(heading > 0.1 && left > 6.0 && right < -0.1);
+    let file = std::env::temp_dir().join(format!("aerobot-torsion-{}.ron", std::process::id()));
+    let folder = std::path::Path::new(".");
+    let written = write_trimmed_scene(&scene, &trim, folder, &file, true);
+    let text = std::fs::read_to_string(&file);
+    let _ = std::fs::remove_file(&file);
+    written.unwrap_or_else(|error| panic!("{error}"));
+    let results = fly(&text.unwrap(), &[]);
+    for (name, twist) in [("left", left), ("right", right)] {
+        let error = largest_error(&results.channel(name, "twist_rad"), |_| twist);
+        assert_below(name, error, 1e-6);
+    }
+}
