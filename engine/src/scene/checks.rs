@@ -109,7 +109,8 @@ fn check_company(simulator: &Simulator, entity: &SceneEntity, report: &mut Field
     }
 }
 
-/// No two entities, and no entity and a node, have one name.
+/// No member of a group has the name of another entity, and no entity that of a node. (Two names in the text
+/// that are the same have been found there.)
 fn check_names(scene: &Scene, report: &mut FieldReport) {
     let mut known = BTreeSet::new();
     for entity in &scene.entities {
@@ -118,7 +119,8 @@ fn check_names(scene: &Scene, report: &mut FieldReport) {
             format!("`{}` is the name of another entity too", entity.name),
             "give one of them another name",
         );
-        if !known.insert(entity.name.as_str()) {
+        let is_member = scene.groups.of(&entity.name).is_some();
+        if !known.insert(entity.name.as_str()) && is_member {
             report.add(&path, message, help);
         }
         let node = entity.name.rsplit_once('/').and_then(|(owner, number)| {
