@@ -7,6 +7,7 @@
 
 pub mod aerodynamics;
 pub mod body;
+pub mod copies;
 pub mod derivatives;
 pub mod environment;
 pub mod inertia;
@@ -16,4 +17,5 @@ pub mod scene_component;
 pub mod segment;
 pub mod state;
 pub mod tether;
+pub mod tether_ring;
 pub mod torsion;

@@ -166,9 +166,26 @@ impl Tether {
         }
     }
 
-    fn check_start(&self, report: &mut FieldReport) {
-        let TetherStart::Positions(positions) = &self.start else {
-            return;
+    /// Whether the positions of its nodes are not what it needs.
+    pub(crate) fn has_wrong_start(&self) -> bool {
+        let mut report = FieldReport::new("");
+        self.check_start(&mut report);
+        !report.into_violations().is_empty()
+    }
+
+    /// Reports what is wrong with the positions of its nodes.
+    pub(crate) fn check_start(&self, report: &mut FieldReport) {
+        let positions = match &self.start {
+            TetherStart::Equilibrium | TetherStart::Straight => return,
+            TetherStart::Positions(positions) => positions,
+            TetherStart::Each(_) => {
+                report.add(
+                    "start",
+                    "`Each` is of the tethers of a ring, and this is one tether",
+                    "give `Positions([..])`",
+                );
+                return;
+            }
         };
         if positions.len() != self.nodes as usize {
             report.add(
@@ -211,6 +228,9 @@ pub enum AttachmentPoint {
     Named(NamedPoint),
     /// x, y, z in the body frame, m.
     Offset(f64, f64, f64),
+    /// This far from a named place, body frame, m: a place on a [ring](crate::tether_ring::Tethers).
+    #[serde(skip)]
+    Displaced(NamedPoint, DVec3),
 }
 
 /// The named places on a body.
@@ -257,6 +277,8 @@ pub enum TetherStart {
     Straight,
     /// At these positions in the inertial frame, m, from `from` to `to`.
     Positions(Vec<DVec3>),
+    /// Of a [ring](crate::tether_ring::Tethers): at these positions, a list for each of its tethers.
+    Each(Vec<Vec<DVec3>>),
 }
 
 /// A point of a tether in the running world: an interior node or an attachment.

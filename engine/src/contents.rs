@@ -13,20 +13,23 @@ impl Simulation {
     /// One line for each entity of `scene`, from which this simulation was built, and what the run
     /// will be like.
     pub fn contents(&mut self, scene: &Scene) -> Vec<String> {
-        let mut lines: Vec<String> = scene
-            .entities
-            .iter()
-            .map(|entity| {
-                let components: Vec<&str> =
-                    entity.components.iter().map(|(name, _)| *name).collect();
-                format!(
-                    "{:<16} {}{}",
-                    entity.name,
-                    components.join(", "),
-                    self.facts(&entity.name)
-                )
-            })
-            .collect();
+        let groups = scene.groups.iter().filter_map(|group| {
+            let (first, last) = (group.members.first()?, group.members.last()?);
+            Some(format!(
+                "{:<16} {}: `{first}` to `{last}`",
+                group.name, group.component
+            ))
+        });
+        let entities = scene.entities.iter().map(|entity| {
+            let components: Vec<&str> = entity.components.iter().map(|(name, _)| *name).collect();
+            format!(
+                "{:<16} {}{}",
+                entity.name,
+                components.join(", "),
+                self.facts(&entity.name)
+            )
+        });
+        let mut lines: Vec<String> = groups.chain(entities).collect();
         lines.push(format!(
             "air: {:?}, gravity: {:?}, {} source(s) of wind",
             scene.environment.atmosphere,

@@ -9,6 +9,7 @@ use aerobot_components::run::Formulation;
 use aerobot_components::scene_component::{FieldReport, SceneComponent};
 
 use crate::builtin;
+use crate::scene::groups::Expansion;
 use crate::scene::registry::{ComponentEntry, ComponentRegistry};
 use crate::scene::{Scene, SetupError};
 use crate::schedule::{Phase, Registration};
@@ -27,6 +28,7 @@ type Setup = dyn Fn(&mut World, &Scene) -> Result<(), SetupError> + Send + Sync;
 /// One simulator serves any number of simulations, on any number of threads.
 pub struct Simulator {
     pub(crate) components: ComponentRegistry,
+    pub(crate) expansions: Vec<Expansion>,
     pub(crate) checks: Vec<Box<Check>>,
     pub(crate) setups: Vec<Box<Setup>>,
     pub(crate) systems: Vec<Registration>,
@@ -45,6 +47,7 @@ impl Simulator {
     pub fn new() -> Self {
         let mut simulator = Self {
             components: ComponentRegistry::default(),
+            expansions: Vec::new(),
             checks: Vec::new(),
             setups: Vec::new(),
             systems: Vec::new(),
@@ -64,6 +67,17 @@ impl Simulator {
     /// earlier one.
     pub fn register_component<C: SceneComponent>(&mut self) -> &mut Self {
         self.components.insert(ComponentEntry::of::<C>());
+        self
+    }
+
+    /// Makes an entity with a `C` stand for the entities `NAME/1`, `NAME/2` and so on, each with one
+    /// component of what `members` makes of the `C`, and with the other components of the entity. `C` has
+    /// to be registered; it is checked, and then no longer in the scene.
+    pub fn add_expansion<C: SceneComponent, M: SceneComponent>(
+        &mut self,
+        members: impl Fn(&C) -> Vec<M> + Send + Sync + 'static,
+    ) -> &mut Self {
+        self.expansions.push(Expansion::new(members));
         self
     }
 

@@ -97,7 +97,8 @@ fn check_base(scene: &Scene, report: &mut FieldReport) {
     };
     let Some(entity) = scene.entity(name) else {
         let bodies = scene.entities.iter().filter(|entity| entity.has::<Body>());
-        let help = meant(name, bodies);
+        let help = scene.groups.help(name);
+        let help = help.unwrap_or_else(|| meant(name, bodies));
         report.add("run.base", format!("there is no entity `{name}`"), help);
         return;
     };

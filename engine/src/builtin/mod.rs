@@ -10,12 +10,15 @@ pub mod slack_events;
 pub mod tethers;
 pub mod torsion;
 
+use aerobot_components::copies::Copies;
+
 use crate::plugin::Simulator;
 use crate::schedule::Phase;
 
 /// Registers all of them. The order is that of their setups, and of their systems within a phase.
 pub(crate) fn register(simulator: &mut Simulator) {
     simulator
+        .register_component::<Copies>()
         .add_plugin(&environment::EnvironmentPlugin)
         .add_plugin(&bodies::BodiesPlugin)
         .add_plugin(&aerodynamics::AerodynamicsPlugin)

@@ -14,6 +14,7 @@ use aerobot_components::tether::{
     Attachment, AttachmentPoint, Lumping, NamedPoint, Tether, TetherEnd, TetherNode, TetherParts,
     TetherPoint, TetherSide,
 };
+use aerobot_components::tether_ring::Tethers;
 use aerobot_systems::dynamics::attachments::{load_carriers, place_attachments};
 use aerobot_systems::dynamics::point_mass::accelerate_nodes;
 use aerobot_systems::dynamics::rigid_body::CarriedMass;
@@ -38,6 +39,8 @@ impl Plugin for TethersPlugin {
     fn build(&self, simulator: &mut Simulator) {
         simulator
             .register_component::<Tether>()
+            .register_component::<Tethers>()
+            .add_expansion(Tethers::members)
             .add_check(check_ends)
             .add_setup(set_up)
             .add_systems(Phase::Prepare, || {
@@ -117,11 +120,15 @@ fn check_end(
 ) {
     let TetherEnd(name, point) = end;
     let Some(target) = scene.entity(name) else {
+        if scene.may_be_unread(name) {
+            return;
+        }
         let carriers = scene
             .entities
             .iter()
             .filter(|entity| !entity.has::<Tether>() && entity.name != tether.name);
-        let help = meant(name, carriers);
+        let help = scene.groups.help(name);
+        let help = help.unwrap_or_else(|| meant(name, carriers));
         report.add(
             path,
             format!("there is no entity `{name}` to tether to"),
@@ -166,6 +173,7 @@ fn check_point(target: &SceneEntity, point: AttachmentPoint, path: &str, report:
     let named_height = matches!(
         point,
         AttachmentPoint::Named(NamedPoint::Bottom | NamedPoint::Top)
+            | AttachmentPoint::Displaced(NamedPoint::Bottom | NamedPoint::Top, _)
     );
     if named_height && !has_sphere && shape.and_then(|shape| shape.half_height_m()).is_none() {
         report.add(
@@ -175,6 +183,7 @@ fn check_point(target: &SceneEntity, point: AttachmentPoint, path: &str, report:
         );
     }
     let off_centre = named_height
+        || matches!(point, AttachmentPoint::Displaced(..))
         || matches!(point, AttachmentPoint::Offset(x, y, z) if x != 0.0 || y != 0.0 || z != 0.0);
     let is_anchor = target.has::<Fixed>() || target.has::<Moving>();
     if off_centre && !is_anchor && matches!(shape, Some(InertiaShape::Point)) {
@@ -200,11 +209,15 @@ fn offset_m(world: &World, carrier: Entity, point: AttachmentPoint) -> DVec3 {
                 .and_then(|body| body.inertia.half_height_m())
         })
         .unwrap_or(0.0);
+    let named_m = |named| match named {
+        NamedPoint::Centre => DVec3::ZERO,
+        NamedPoint::Bottom => DVec3::new(0.0, 0.0, -half_height),
+        NamedPoint::Top => DVec3::new(0.0, 0.0, half_height),
+    };
     match point {
         AttachmentPoint::Offset(x, y, z) => DVec3::new(x, y, z),
-        AttachmentPoint::Named(NamedPoint::Centre) => DVec3::ZERO,
-        AttachmentPoint::Named(NamedPoint::Bottom) => DVec3::new(0.0, 0.0, -half_height),
-        AttachmentPoint::Named(NamedPoint::Top) => DVec3::new(0.0, 0.0, half_height),
+        AttachmentPoint::Named(named) => named_m(named),
+        AttachmentPoint::Displaced(named, by_m) => named_m(named) + by_m,
     }
 }
 

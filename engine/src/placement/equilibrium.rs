@@ -315,9 +315,9 @@ pub(super) const NO_EQUILIBRIUM_HELP: &str =
 /// The search left what can be evaluated; the cause is the fault, not the search.
 pub(super) fn fault_on_the_way(world: &World, fault: &Fault) -> SetupError {
     let name = fault.entity.and_then(|entity| owner_name(world, entity));
-    let path = name.as_ref().map_or_else(String::new, |name| {
-        format!("entities.{}", name.split('/').next().unwrap_or(""))
-    });
+    let path = name
+        .as_ref()
+        .map_or_else(String::new, |name| format!("entities.{name}"));
     let who = name.map_or_else(String::new, |name| format!("`{name}`: "));
     SetupError::new(path, format!("{who}{}", fault.message), OUTSIDE_HELP)
 }
@@ -328,9 +328,7 @@ pub(super) fn no_equilibrium(world: &World, entity: Option<Entity>, reason: &str
         .map_or_else(|| "the scene".to_owned(), |name| format!("`{}`", name.0));
     let path = entity
         .and_then(|entity| world.get::<EntityName>(entity))
-        .map_or_else(String::new, |name| {
-            format!("entities.{}", name.0.split('/').next().unwrap_or(""))
-        });
+        .map_or_else(String::new, |name| format!("entities.{}", name.0));
     SetupError::new(
         path,
         format!("{name} finds no static equilibrium: {reason}"),

@@ -10,7 +10,7 @@ use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::instruments::attitude::heading_rad;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 
 use super::attachment_position;
 use crate::balloon_sizing::{tethered_mass_kg, tethered_together};
@@ -113,15 +113,31 @@ fn hang(world: &mut World, lines: &[Line], bodies: &[Entity], waiting: &mut Vec<
     for (body, holding) in generations.into_iter().flatten() {
         let load = loads.get(&body).copied().unwrap_or(0.0);
         let down = if load < 0.0 { DVec3::Z } else { DVec3::NEG_Z };
+        if let Some(yaw) = untwisting_yaw(world, lines, body, &holding)
+            && let Some(mut attitude) = world.get_mut::<Attitude>(body)
+        {
+            attitude.0 = yaw * attitude.0;
+        }
         let attitude = world.get::<Attitude>(body).copied().unwrap_or_default();
         let count = holding.len() as f64;
+        // Where the body would be for each of its lines, were it plumb.
+        let plumb: Vec<(DVec3, f64)> = holding
+            .iter()
+            .map(|index| {
+                let line = &lines[*index];
+                let (own, holder) = oriented(line, body);
+                let top = attachment_position(world, holder.0, holder.1);
+                let length = line.length_m * (1.0 + load.abs() / (count * line.stiffness_n));
+                (top - attitude.0 * own.1, length)
+            })
+            .collect();
+        let middle = plumb
+            .iter()
+            .fold(DVec3::ZERO, |sum, (top, _)| sum + *top / count);
         let mut place = DVec3::ZERO;
-        for index in &holding {
-            let line = &lines[*index];
-            let (own, holder) = oriented(line, body);
-            let top = attachment_position(world, holder.0, holder.1);
-            let length = line.length_m * (1.0 + load.abs() / (count * line.stiffness_n));
-            place += (top + length * down - attitude.0 * own.1) / count;
+        for (top, length) in plumb {
+            let height = height_m(length, (middle - top).with_z(0.0).length());
+            place += (top + height * down) / count;
         }
         if let Some(mut position) = world.get_mut::<Position>(body) {
             position.0 = place;
@@ -129,6 +145,48 @@ fn hang(world: &mut World, lines: &[Line], bodies: &[Entity], waiting: &mut Vec<
     }
     *waiting = left;
 }
+
+/// Height between the ends of a line of `length_m` that are `across_m` apart horizontally, m.
+fn height_m(length_m: f64, across_m: f64) -> f64 {
+    if across_m < 1e-9 * length_m {
+        return length_m;
+    }
+    // A line that is too short is stretched, and stays off the horizontal.
+    let part = (across_m / length_m).min(0.99);
+    length_m * (1.0 - part * part).sqrt()
+}
+
+/// The turn about the vertical that brings the places of a body nearest, all in all, below those from
+/// which lines hold it; none where they are all above one another.
+fn untwisting_yaw(world: &World, lines: &[Line], body: Entity, holding: &[usize]) -> Option<DQuat> {
+    world.get::<Inertia>(body)?;
+    let attitude = world.get::<Attitude>(body)?.0;
+    let pairs: Vec<(DVec2, DVec2)> = holding
+        .iter()
+        .map(|index| {
+            let (own, holder) = oriented(&lines[*index], body);
+            let top = attachment_position(world, holder.0, holder.1);
+            ((attitude * own.1).truncate(), top.truncate())
+        })
+        .collect();
+    let count = pairs.len() as f64;
+    let sum = pairs.iter().fold((DVec2::ZERO, DVec2::ZERO), |sum, pair| {
+        (sum.0 + pair.0, sum.1 + pair.1)
+    });
+    let (mut cosine, mut sine, mut size) = (0.0, 0.0, 0.0);
+    for (own, top) in pairs {
+        let (own, top) = (own - sum.0 / count, top - sum.1 / count);
+        cosine += own.dot(top);
+        sine += own.perp_dot(top);
+        size += own.length() * top.length();
+    }
+    let is_known = libm::hypot(cosine, sine) > SMALLEST_PART * size;
+    let yaw_rad = libm::atan2(sine, cosine);
+    (is_known && yaw_rad.abs() > SMALLEST_PART).then(|| DQuat::from_rotation_z(yaw_rad))
+}
+
+/// What is smaller than this part of its terms is their round-off.
+const SMALLEST_PART: f64 = 1e-9;
 
 /// Turns bodies to where plumb lines hold them: upward forces f_i at places r_i make no torque if
 /// sum f_i r_i points up; they keep the heading they have.
@@ -139,25 +197,53 @@ fn turn(
     generations: &[Vec<(Entity, Vec<usize>)>],
     loads: &BTreeMap<Entity, f64>,
 ) {
-    let mut leans: BTreeMap<Entity, DVec3> = BTreeMap::new();
+    let mut leans: BTreeMap<Entity, Lean> = BTreeMap::new();
     for (body, holding) in generations.iter().flatten() {
         let up = loads.get(body).copied().unwrap_or(0.0) / holding.len() as f64;
         for index in holding {
             let line = &lines[*index];
             let (own, holder) = oriented(line, *body);
-            *leans.entry(*body).or_default() += up * own.1;
-            *leans.entry(holder.0).or_default() -= (up + line.weight_n) * holder.1;
+            leans.entry(*body).or_default().add(up * own.1);
+            let pull = up + line.weight_n;
+            leans.entry(holder.0).or_default().add(-pull * holder.1);
         }
     }
     for body in bodies {
         if world.get::<Inertia>(*body).is_none() {
             continue;
         }
-        let lean = leans.get(body).copied().and_then(DVec3::try_normalize);
+        let lean = leans.get(body).and_then(Lean::direction);
         if let (Some(lean), Some(mut attitude)) = (lean, world.get_mut::<Attitude>(*body)) {
             let heading = DQuat::from_rotation_z(heading_rad(attitude.0));
             attitude.0 = heading * DQuat::from_rotation_arc(lean, DVec3::Z);
         }
+    }
+}
+
+/// What points up in a body that lines hold: sum f_i r_i.
+#[derive(Default)]
+struct Lean {
+    terms: Vec<DVec3>,
+}
+
+impl Lean {
+    fn add(&mut self, term: DVec3) {
+        self.terms.push(term);
+    }
+
+    /// Its direction; none where the terms cancel, nor where it would turn a body over that three lines or
+    /// more hold up by an area.
+    fn direction(&self) -> Option<DVec3> {
+        let sum = self.terms.iter().fold(DVec3::ZERO, |sum, term| sum + *term);
+        let size: f64 = self.terms.iter().map(|term| term.length()).sum();
+        let is_held_by_area = || {
+            let mut pairs = self.terms.windows(2).map(|pair| pair[0] - pair[1]);
+            let first = pairs.next().unwrap_or_default();
+            pairs.any(|other| first.cross(other).length() > SMALLEST_PART * size * size)
+        };
+        let is_round_off = sum.length() <= SMALLEST_PART * size;
+        let direction = (!is_round_off).then(|| sum.try_normalize())??;
+        (direction.z > 0.0 || !is_held_by_area()).then_some(direction)
     }
 }
 

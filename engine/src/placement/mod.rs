@@ -131,7 +131,7 @@ fn place_given_nodes(world: &mut World) {
         .collect();
     for (tether, start) in given {
         match start {
-            TetherStart::Equilibrium => {}
+            TetherStart::Equilibrium | TetherStart::Each(_) => {}
             TetherStart::Straight => nodes::place_on_line(world, tether),
             TetherStart::Positions(positions) => {
                 nodes::set_node_positions(world, tether, &positions);

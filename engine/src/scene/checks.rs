@@ -1,37 +1,50 @@
 //! Checks that any scene must pass, whatever its components: their own fields, what they exclude and
 //! need, and the checks that plugins add.
 
+use std::collections::BTreeSet;
+
 use aerobot_components::run::{ChannelSelection, InstrumentSelection};
 use aerobot_components::scene_component::FieldReport;
+use aerobot_components::tether::Tether;
 
+use super::copies::{COPIES, check_step};
+use super::reader::Written;
 use super::source::nearest;
 use super::{Scene, SceneEntity};
 use crate::plugin::Simulator;
 
-/// Runs every check, also on a scene that is not `complete` because some of it could not be read.
-pub(super) fn check_scene(
+/// Checks each entity as it is written, also of a scene that is not `complete` because some of it could
+/// not be read.
+pub(super) fn check_written(
     simulator: &Simulator,
-    scene: &Scene,
+    written: &[Written],
     complete: bool,
     report: &mut FieldReport,
 ) {
-    for entity in &scene.entities {
+    for Written { entity, .. } in written {
         for (name, component) in &entity.components {
             let path = format!("entities.{}.{name}", entity.name);
             report.within(&path, |report| component.check(report));
         }
     }
-    if complete && scene.entities.is_empty() {
+    if complete && written.is_empty() {
         report.add(
             "entities",
             "the scene has no entities",
             "add one: `\"gondola\": (Body: (mass_kg: ..), ..)`",
         );
     }
-    let mut across = FieldReport::new("");
-    for entity in &scene.entities {
-        check_company(simulator, entity, &mut across);
+    let whole = written.iter().filter(|written| written.entity.complete);
+    for Written { entity, .. } in whole {
+        check_company(simulator, entity, report);
+        check_step(entity, report);
     }
+}
+
+/// Runs the checks on the scene as a whole.
+pub(super) fn check_scene(simulator: &Simulator, scene: &Scene, report: &mut FieldReport) {
+    let mut across = FieldReport::new("");
+    check_names(scene, &mut across);
     check_record(scene, &mut across);
     for check in &simulator.checks {
         check(scene, &mut across);
@@ -59,7 +72,11 @@ fn is_of_incomplete(scene: &Scene, path: &str) -> bool {
 /// What a component excludes must be absent, and what it needs present.
 fn check_company(simulator: &Simulator, entity: &SceneEntity, report: &mut FieldReport) {
     let has = |name: &str| entity.components.iter().any(|(other, _)| *other == name);
-    if entity.components.is_empty() {
+    let stands_for = |name: &str| {
+        let mut expansions = simulator.expansions.iter();
+        expansions.any(|expansion| expansion.member == name && has(expansion.written))
+    };
+    if !entity.components.iter().any(|(name, _)| *name != COPIES) {
         report.add(
             &format!("entities.{}", entity.name),
             format!("`{}` has no components", entity.name),
@@ -81,13 +98,39 @@ fn check_company(simulator: &Simulator, entity: &SceneEntity, report: &mut Field
         for group in entry
             .requires
             .iter()
-            .filter(|group| !group.iter().any(|name| has(name)))
+            .filter(|group| !group.iter().any(|name| has(name) || stands_for(name)))
         {
             report.add(
                 &path,
                 format!("`{name}` needs `{}` beside it", group.join("` or `")),
                 "add it to the same entity",
             );
+        }
+    }
+}
+
+/// No member of a group has the name of another entity, and no entity that of a node. (Two names in the text
+/// that are the same have been found there.)
+fn check_names(scene: &Scene, report: &mut FieldReport) {
+    let mut known = BTreeSet::new();
+    for entity in &scene.entities {
+        let path = format!("entities.{}", entity.name);
+        let (message, help) = (
+            format!("`{}` is the name of another entity too", entity.name),
+            "give one of them another name",
+        );
+        let is_member = scene.groups.of(&entity.name).is_some();
+        if !known.insert(entity.name.as_str()) && is_member {
+            report.add(&path, message, help);
+        }
+        let node = entity.name.rsplit_once('/').and_then(|(owner, number)| {
+            let nodes = scene.entity(owner)?.get::<Tether>()?.nodes;
+            let number = number.parse::<u32>().ok()?;
+            (1..=nodes).contains(&number).then_some(owner)
+        });
+        if let Some(tether) = node {
+            let message = format!("`{}` is the name of a node of `{tether}`", entity.name);
+            report.add(&path, message, help);
         }
     }
 }
@@ -107,7 +150,7 @@ fn check_record(scene: &Scene, report: &mut FieldReport) {
         }));
     }
     for (path, name) in named {
-        if scene.entity(name).is_none() {
+        if scene.entity(name).is_none() && !scene.may_be_unread(name) {
             let help = meant(name, scene.entities.iter());
             report.add(&path, format!("there is no entity `{name}`"), help);
         }

@@ -7,7 +7,8 @@ use aerobot_components::environment::{AtmosphereSpec, Environment};
 use aerobot_components::run::RunSpec;
 use aerobot_components::scene_component::{FieldReport, Violation};
 
-use super::checks::check_scene;
+use super::checks::{check_scene, check_written};
+use super::groups::Groups;
 use super::reader::Reader;
 use super::source::{
     Diagnostic, FieldPath, Kind, Node, Override, Scalar, Source, duplicates, non_finite,
@@ -80,7 +81,7 @@ impl Simulator {
         let environment: Option<Environment> =
             reader.optional(&fields, "environment", Environment::default);
         let run: Option<RunSpec> = reader.required(&fields, root, "run");
-        let entities = reader.entities(self, &fields, root);
+        let written = reader.entities(self, &fields, root);
         let mut diagnostics = reader.diagnostics;
         let in_text = text_diagnostics(&source, root);
 
@@ -97,17 +98,28 @@ impl Simulator {
             tables = Tables::read(environment, folder, &mut report);
         }
         let complete = diagnostics.is_empty() && in_text.is_empty();
+        check_written(self, &written, complete, &mut report);
+        let mut groups = Groups::default();
+        let mut entities = Vec::new();
+        for written in written {
+            entities.extend(written.into_copies(&mut groups));
+        }
+        let entities = groups.expand(&self.expansions, entities);
+        let mut run = run.unwrap_or_else(placeholder_run);
+        groups.expand_record(&mut run.record);
         let scene = Scene {
             name: name.unwrap_or_default(),
             about: about.unwrap_or_default(),
             environment: environment.unwrap_or_else(placeholder_environment),
             entities,
-            run: run.unwrap_or_else(placeholder_run),
+            groups,
+            run,
             tables,
             source,
         };
-        check_scene(self, &scene, complete, &mut report);
-        diagnostics.extend(locate(&scene.source, report.into_violations()));
+        check_scene(self, &scene, &mut report);
+        let violations = scene.groups.relocate(report.into_violations());
+        diagnostics.extend(locate(&scene.source, violations));
         diagnostics.retain(|diagnostic| !echoes(diagnostic, &in_text));
         diagnostics.extend(in_text);
         if diagnostics.is_empty() {

@@ -5,6 +5,8 @@
 //! valid.
 
 pub mod checks;
+pub(crate) mod copies;
+pub mod groups;
 pub mod load;
 mod reader;
 pub mod registry;
@@ -15,8 +17,9 @@ use std::fmt;
 
 use aerobot_components::environment::Environment;
 use aerobot_components::run::RunSpec;
-use aerobot_components::scene_component::SceneComponent;
+use aerobot_components::scene_component::{SceneComponent, Violation};
 
+use groups::Groups;
 use registry::ParsedComponent;
 use source::{Diagnostic, Source};
 use tables::Tables;
@@ -29,8 +32,10 @@ pub struct Scene {
     pub about: String,
     /// Gravity, air and wind.
     pub environment: Environment,
-    /// The entities, in the order of the file.
+    /// The entities, in the order of the file; of one that stands for others, those.
     pub entities: Vec<SceneEntity>,
+    /// Which entities of the file stand for which others.
+    pub groups: Groups,
     /// How it is run.
     pub run: RunSpec,
     /// The tables that it reads from files beside it.
@@ -79,6 +84,26 @@ impl Scene {
         self.entities.iter().find(|entity| entity.name == name)
     }
 
+    /// Whether an entity of this name may belong to one that could not be read.
+    pub(crate) fn may_be_unread(&self, name: &str) -> bool {
+        self.entities.iter().any(|entity| {
+            let below = name.strip_prefix(entity.name.as_str());
+            !entity.complete && below.is_some_and(|below| below.starts_with('/'))
+        })
+    }
+
+    /// A violation of a node as one of its tether, which is what the scene has.
+    fn of_owner(&self, mut violation: Violation) -> Violation {
+        if let Some(name) = violation.path.strip_prefix("entities.")
+            && self.entity(name).is_none()
+            && let Some((owner, _)) = name.rsplit_once('/')
+            && self.entity(owner).is_some()
+        {
+            violation.path = format!("entities.{owner}");
+        }
+        violation
+    }
+
     /// Every entity that has a component of type `C`, with it, in the order of the file.
     pub fn with<C: SceneComponent>(&self) -> impl Iterator<Item = (&SceneEntity, &C)> {
         self.entities
@@ -89,19 +114,24 @@ impl Scene {
     /// Turns what a setup found into the message that a user reads.
     #[must_use]
     pub fn refuse(&self, error: SetupError) -> SceneError {
-        SceneError::render(&self.source, &load::locate(&self.source, error.0))
+        let owned = error
+            .0
+            .into_iter()
+            .map(|violation| self.of_owner(violation));
+        let violations = self.groups.relocate(owned.collect());
+        SceneError::render(&self.source, &load::locate(&self.source, violations))
     }
 }
 
 /// What a setup finds wrong: violations as paths and messages.
 #[derive(Debug)]
-pub struct SetupError(pub Vec<aerobot_components::scene_component::Violation>);
+pub struct SetupError(pub Vec<Violation>);
 
 impl SetupError {
     /// One violation at a path, with a remedy (may be empty).
     #[must_use]
     pub fn new(path: impl Into<String>, message: impl Into<String>, help: &str) -> Self {
-        Self(vec![aerobot_components::scene_component::Violation {
+        Self(vec![Violation {
             path: path.into(),
             message: message.into(),
             help: (!help.is_empty()).then(|| help.to_owned()),

@@ -1,12 +1,40 @@
 //! Reads the typed parts of a scene out of its tree, one by one, and keeps what goes wrong with each.
 
+use aerobot_components::copies::Copies;
+use glam::DVec3;
 use serde::de::DeserializeOwned;
 
-use super::SceneEntity;
-use super::source::{Diagnostic, Field, Kind, Node, nearest, parse_fields};
+use super::groups::Groups;
+use super::registry::ParsedComponent;
+use super::source::{Diagnostic, Field, Kind, Node, nearest, parse_fields, scan};
+use super::{SceneEntity, copies};
 use crate::plugin::Simulator;
 
 const ROOT_FIELDS: [&str; 5] = ["name", "about", "environment", "entities", "run"];
+
+/// An entity as it is written, and its copies if it has `Copies`.
+pub(super) struct Written {
+    pub(super) entity: SceneEntity,
+    copies: Option<Vec<SceneEntity>>,
+}
+
+impl Written {
+    /// What it stands for: its copies, or itself.
+    pub(super) fn into_copies(self, groups: &mut Groups) -> Vec<SceneEntity> {
+        match self.copies {
+            Some(found) => {
+                groups.add(&self.entity.name, copies::COPIES, None, &found);
+                found
+            }
+            // Without its copies nothing more can be said of it.
+            None if self.entity.has::<Copies>() => vec![SceneEntity {
+                complete: false,
+                ..self.entity
+            }],
+            None => vec![self.entity],
+        }
+    }
+}
 
 /// Reads typed parts out of the tree and keeps what goes wrong.
 pub(super) struct Reader<'a> {
@@ -118,7 +146,7 @@ impl Reader<'_> {
         simulator: &Simulator,
         fields: &[&Field],
         root: &Node,
-    ) -> Vec<SceneEntity> {
+    ) -> Vec<Written> {
         let Some(field) = fields.iter().find(|field| field.name == "entities") else {
             self.missing(root, "entities");
             return Vec::new();
@@ -134,12 +162,15 @@ impl Reader<'_> {
         let mut entities = Vec::new();
         for entry in entries {
             let allowed = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
-            if entry.name.is_empty() || !entry.name.chars().all(allowed) {
+            let is_plain = |part: &str| !part.is_empty() && part.chars().all(allowed);
+            if !entry.name.split('/').all(is_plain) {
                 self.diagnostics.push(
                     Diagnostic::new(format!("`{}` cannot name an entity", entry.name))
                         .at(entry.key.span.clone())
                         .with_path("entities")
-                        .with_help("use letters, digits, `-` and `_`"),
+                        .with_help(
+                            "use letters, digits, `-` and `_`, and `/` between parts of a name",
+                        ),
                 );
                 continue;
             }
@@ -156,11 +187,13 @@ impl Reader<'_> {
             }
             let known = self.diagnostics.len();
             let components = self.components(simulator, &entry.name, &entry.value);
-            entities.push(SceneEntity {
+            let entity = SceneEntity {
                 name: entry.name.clone(),
                 components,
                 complete: self.diagnostics.len() == known,
-            });
+            };
+            let copies = self.copies(simulator, &entity, &entry.value);
+            entities.push(Written { entity, copies });
         }
         entities
     }
@@ -170,7 +203,7 @@ impl Reader<'_> {
         simulator: &Simulator,
         entity: &str,
         node: &Node,
-    ) -> Vec<(&'static str, Box<dyn super::registry::ParsedComponent>)> {
+    ) -> Vec<(&'static str, Box<dyn ParsedComponent>)> {
         let Kind::Struct { fields, .. } = &node.kind else {
             self.diagnostics.push(
                 Diagnostic::new("an entity is its components: `(Body: (..), Drag: ..)`")
@@ -190,6 +223,74 @@ impl Reader<'_> {
                 Ok(component) => components.push((entry.name, component)),
                 Err(found) => self.keep(field, found),
             }
+        }
+        components
+    }
+
+    /// The copies of an entity, if it is to be copied.
+    fn copies(
+        &mut self,
+        simulator: &Simulator,
+        entity: &SceneEntity,
+        node: &Node,
+    ) -> Option<Vec<SceneEntity>> {
+        let count = copies::count(entity).filter(|_| entity.complete)?;
+        let known = self.diagnostics.len();
+        let mut found = Vec::new();
+        for number in 1..=count {
+            let name = format!("{}/{number}", entity.name);
+            let components = self.copy(simulator, entity, node, number);
+            // What is wrong with one is wrong with all.
+            let complete = self.diagnostics.len() == known;
+            found.push(SceneEntity {
+                name,
+                components,
+                complete,
+            });
+            if !complete {
+                return None;
+            }
+        }
+        Some(found)
+    }
+
+    /// The components of copy `number` of an entity.
+    fn copy(
+        &mut self,
+        simulator: &Simulator,
+        entity: &SceneEntity,
+        node: &Node,
+        number: u32,
+    ) -> Vec<(&'static str, Box<dyn ParsedComponent>)> {
+        let Kind::Struct { fields, .. } = &node.kind else {
+            return Vec::new();
+        };
+        let step_m = entity.get::<Copies>().map_or(DVec3::ZERO, |c| c.step_m);
+        let mut components = Vec::new();
+        for (name, component) in &entity.components {
+            let Some(field) = fields.iter().find(|field| field.name == *name) else {
+                continue;
+            };
+            if *name == copies::COPIES {
+                continue;
+            }
+            let mut component = component.boxed_clone();
+            if let Some(text) = copies::numbered_text(self.text, &field.value, number)
+                && let Some(entry) = simulator.components.get(name)
+                && let Ok(value) = scan(&text)
+            {
+                let path = format!("entities.{}.{name}", entity.name);
+                match (entry.parse)(&text, &value, &path) {
+                    Ok(own) => component = own,
+                    Err(found) => {
+                        let placed = found.into_iter().map(|d| d.at(field.name_span.clone()));
+                        self.diagnostics.extend(placed);
+                        return components;
+                    }
+                }
+            }
+            copies::shift(&mut *component, f64::from(number - 1) * step_m);
+            components.push((*name, component));
         }
         components
     }

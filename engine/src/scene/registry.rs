@@ -18,6 +18,10 @@ pub trait ParsedComponent: Any + Send + Sync {
     fn insert(&self, entity: &mut EntityWorldMut);
     /// The component itself, for a caller that knows its type.
     fn as_any(&self) -> &dyn Any;
+    /// As [`ParsedComponent::as_any`], to be changed.
+    fn as_any_mut(&mut self) -> &mut dyn Any;
+    /// A copy.
+    fn boxed_clone(&self) -> Box<dyn ParsedComponent>;
 }
 
 impl<C: SceneComponent> ParsedComponent for C {
@@ -31,6 +35,14 @@ impl<C: SceneComponent> ParsedComponent for C {
 
     fn as_any(&self) -> &dyn Any {
         self
+    }
+
+    fn as_any_mut(&mut self) -> &mut dyn Any {
+        self
+    }
+
+    fn boxed_clone(&self) -> Box<dyn ParsedComponent> {
+        Box::new(self.clone())
     }
 }
 

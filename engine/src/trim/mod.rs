@@ -2,6 +2,7 @@
 
 mod report;
 pub mod scene_file;
+mod written_out;
 
 use aerobot_systems::fault::Fault;
 use bevy_ecs::world::World;

@@ -1,17 +1,19 @@
 //! A scene that starts in its steady state: its own text with the poses, motions and node positions of a
 //! [`Trim`] put in. Comments and layout survive; tables keep their places, named as seen from the new
-//! file.
+//! file. Rings stay rings, with the nodes of `Each` of their tethers; copies are written out.
 
 use std::fmt;
 use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-use aerobot_components::body::{Motion, Pose};
+use aerobot_components::body::{Fixed, Motion, Moving, Pose};
 use aerobot_components::scene_component::SceneComponent;
 use aerobot_components::tether::Tether;
+use aerobot_components::tether_ring::Tethers;
 use glam::DVec3;
 
+use super::written_out::with_copies_written_out;
 use super::{Trim, TrimmedBody, TrimmedTether};
 use crate::recording::number::write_number;
 use crate::scene::source::{FieldPath, Segment, apply, parse_override};
@@ -117,20 +119,15 @@ fn trimmed_text(
     new_folder: &Path,
 ) -> Result<String, WriteError> {
     let mut edits = Vec::new();
-    for body in trim.bodies.iter().filter(|body| !body.is_anchor) {
-        edits.push(edit(&body.name, &[Pose::NAME], &pose(body)));
-        push_motion(scene, &body.name, body.velocity_m_s, &mut edits);
-    }
-    for tether in &trim.tethers {
-        if !tether.node_positions_m.is_empty() {
-            edits.push(edit(&tether.name, &[Tether::NAME, "start"], &start(tether)));
+    for body in &trim.bodies {
+        if body.is_anchor {
+            push_place_of_copy(scene, &body.name, &mut edits);
+        } else {
+            edits.push(edit(&body.name, &[Pose::NAME], &pose(body)));
+            push_motion(scene, &body.name, &body.name, body.velocity_m_s, &mut edits);
         }
-        if let Some(twist_rad) = tether.twist_rad {
-            let fields = [Tether::NAME, "torsion", "twist_rad"];
-            edits.push(edit(&tether.name, &fields, &number(twist_rad)));
-        }
-        push_motion(scene, &tether.name, tether.velocity_m_s, &mut edits);
     }
+    push_tethers(scene, trim, &mut edits);
     for (path, table) in scene.tables.paths(&scene.environment) {
         let name = renamed(&table, scene_folder, new_folder)?;
         if name != table {
@@ -142,15 +139,74 @@ fn trimmed_text(
         .iter()
         .map(|argument| parse_override(argument).map_err(refused))
         .collect::<Result<Vec<_>, _>>()?;
+    let written_out = with_copies_written_out(scene.source.text(), &scene.groups);
     let edited =
-        apply(scene.source.text(), &overrides).map_err(|diagnostic| refused(diagnostic.message))?;
+        apply(&written_out, &overrides).map_err(|diagnostic| refused(diagnostic.message))?;
     Ok(edited.text().to_owned())
 }
 
-/// What moves says so, and what was said to move and does not.
-fn push_motion(scene: &Scene, name: &str, velocity_m_s: DVec3, edits: &mut Vec<String>) {
+/// Where nodes start, and how they move: of single tethers, and of the tethers of each ring together.
+fn push_tethers(scene: &Scene, trim: &Trim, edits: &mut Vec<String>) {
+    let ring_of = |tether: &TrimmedTether| {
+        let (group, _) = scene.groups.of(&tether.name)?;
+        (group.component == Tethers::NAME).then_some(group.name.as_str())
+    };
+    let mut rest = trim.tethers.as_slice();
+    while let Some(first) = rest.first() {
+        let ring = ring_of(first);
+        let count = rest
+            .iter()
+            .take_while(|tether| ring.is_some() && ring_of(tether) == ring)
+            .count();
+        let (tethers, others) = rest.split_at(count.max(1));
+        rest = others;
+        let (name, component, start) = match ring {
+            None => (first.name.as_str(), Tether::NAME, start(first)),
+            Some(ring) => {
+                let lists: Vec<String> = tethers.iter().map(positions).collect();
+                (ring, Tethers::NAME, format!("Each([{}])", lists.join(", ")))
+            }
+        };
+        if !first.node_positions_m.is_empty() {
+            edits.push(edit(name, &[component, "start"], &start));
+        }
+        if let Some(twist_rad) = first.twist_rad {
+            let fields = [component, "torsion", "twist_rad"];
+            edits.push(edit(name, &fields, &number(twist_rad)));
+        }
+        push_motion(scene, name, &first.name, first.velocity_m_s, edits);
+    }
+}
+
+/// A copy of an anchor stands where its number puts it.
+fn push_place_of_copy(scene: &Scene, name: &str, edits: &mut Vec<String>) {
+    let Some(anchor) = scene.groups.of(name).and_then(|_| scene.entity(name)) else {
+        return;
+    };
+    let fixed = anchor.get::<Fixed>().and_then(|fixed| fixed.position_m);
+    let places = [
+        (Fixed::NAME, fixed),
+        (Moving::NAME, anchor.get::<Moving>().map(|m| m.position_m)),
+        (Pose::NAME, anchor.get::<Pose>().map(|pose| pose.position_m)),
+    ];
+    for (component, place) in places {
+        if let Some(place) = place {
+            edits.push(edit(name, &[component, "position_m"], &vector(place)));
+        }
+    }
+}
+
+/// What moves says so, and what was said to move and does not: the entity `name` of the text, that stands
+/// for `member` of the scene.
+fn push_motion(
+    scene: &Scene,
+    name: &str,
+    member: &str,
+    velocity_m_s: DVec3,
+    edits: &mut Vec<String>,
+) {
     let has_motion = scene
-        .entity(name)
+        .entity(member)
         .is_some_and(|entity| entity.has::<Motion>());
     if has_motion || velocity_m_s != DVec3::ZERO {
         let motion = format!("(velocity_m_s: {})", vector(velocity_m_s));
@@ -178,13 +234,18 @@ fn pose(body: &TrimmedBody) -> String {
 }
 
 fn start(tether: &TrimmedTether) -> String {
+    format!("Positions({})", positions(tether))
+}
+
+/// The list of the positions of a tether's nodes.
+fn positions(tether: &TrimmedTether) -> String {
     let positions: Vec<String> = tether
         .node_positions_m
         .iter()
         .copied()
         .map(vector)
         .collect();
-    format!("Positions([{}])", positions.join(", "))
+    format!("[{}]", positions.join(", "))
 }
 
 fn vector(value: DVec3) -> String {
