@@ -7,6 +7,7 @@ use aerobot_components::run::ChannelSelection;
 use aerobot_components::scene_component::FieldReport;
 use aerobot_components::state::{Air, FirstOrderState, Inertia, Position};
 use aerobot_components::tether::{Attachment, Tether, TetherParts};
+use aerobot_components::winch::Winch;
 use aerobot_systems::clock::Clock;
 use aerobot_systems::dynamics::attachments::accelerate_attachments;
 use aerobot_systems::instruments::airspeed::{AIRSPEED, airspeed};
@@ -19,6 +20,7 @@ use aerobot_systems::instruments::energy::{
     KINETIC, MECHANICAL, POTENTIAL, WORK, WorkIntegral, energy, nonconservative_power,
 };
 use aerobot_systems::instruments::swing::{SWING, SWING_X, SWING_Y, Support, swing};
+use aerobot_systems::instruments::winch::{LINE_OUT, WINCH_POWER, WINCH_WORK, winch};
 use bevy_ecs::entity::Entity;
 use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::system::{IntoSystem, Res};
@@ -33,6 +35,7 @@ use crate::world::{SceneEntities, next_spawn_order};
 
 const BODY_CHANNELS: [&str; 6] = [AIRSPEED, TILT, HEADING, SWING, SWING_X, SWING_Y];
 const TETHER_CHANNELS: [&str; 2] = [TENSION_FROM, TENSION_TO];
+const WINCH_CHANNELS: [&str; 5] = [TENSION_FROM, TENSION_TO, WINCH_POWER, WINCH_WORK, LINE_OUT];
 const SYSTEM_CHANNELS: [&str; 4] = [KINETIC, POTENTIAL, MECHANICAL, WORK];
 
 /// Airspeed, tilt, heading, swing, attachment tensions and energy.
@@ -53,6 +56,7 @@ impl Plugin for ChannelsPlugin {
                     .pipe(attachment_tension)
                     .run_if(channels_due)
             })
+            .add_systems_for::<Winch, _, _>(Phase::Observe, || winch.run_if(channels_due))
             .add_systems_if(Phase::Observe, records_energy, || {
                 energy.run_if(channels_due)
             });
@@ -61,7 +65,9 @@ impl Plugin for ChannelsPlugin {
 
 /// The channels that exist on an entity of a scene.
 fn known_channels(entity: &SceneEntity) -> &'static [&'static str] {
-    if entity.has::<Tether>() {
+    if entity.has::<Winch>() {
+        &WINCH_CHANNELS
+    } else if entity.has::<Tether>() {
         &TETHER_CHANNELS
     } else if entity.has::<Body>() {
         &BODY_CHANNELS
@@ -230,7 +236,7 @@ fn hanging(world: &World, parts: &TetherParts) -> Option<Hanging> {
 
 /// Whether a channel of this name is a built-in one.
 pub(crate) fn is_built_in(channel: &str) -> bool {
-    [&BODY_CHANNELS[..], &TETHER_CHANNELS, &SYSTEM_CHANNELS]
+    [&BODY_CHANNELS[..], &WINCH_CHANNELS, &SYSTEM_CHANNELS]
         .iter()
         .any(|channels| channels.contains(&channel))
 }

@@ -4,10 +4,12 @@ pub mod aerodynamics;
 pub mod bodies;
 pub mod channels;
 pub mod environment;
+pub mod events;
 pub mod links;
 pub mod recorder;
 pub mod slack_events;
 pub mod tethers;
+pub mod winches;
 
 use crate::plugin::Simulator;
 use crate::schedule::Phase;
@@ -19,10 +21,12 @@ pub(crate) fn register(simulator: &mut Simulator) {
         .add_plugin(&bodies::BodiesPlugin)
         .add_plugin(&aerodynamics::AerodynamicsPlugin)
         .add_plugin(&tethers::TethersPlugin)
+        .add_plugin(&winches::WinchesPlugin)
         .add_plugin(&bodies::MotionPlugin)
         .add_plugin(&links::LinksPlugin)
         .add_plugin(&channels::ChannelsPlugin)
         .add_plugin(&slack_events::SlackEventsPlugin)
         .add_plugin(&recorder::RecorderPlugin)
+        .add_plugin(&events::EventsPlugin)
         .add_systems(Phase::Integrate, || crate::evaluation::integrate);
 }

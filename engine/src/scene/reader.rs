@@ -1,12 +1,14 @@
 //! Reads the typed parts of a scene out of its tree, one by one, and keeps what goes wrong with each.
 
+use std::sync::Arc;
+
 use serde::de::DeserializeOwned;
 
 use super::SceneEntity;
 use super::source::{Diagnostic, Field, Kind, Node, nearest, parse_fields};
 use crate::plugin::Simulator;
 
-const ROOT_FIELDS: [&str; 5] = ["name", "about", "environment", "entities", "run"];
+const ROOT_FIELDS: [&str; 6] = ["name", "about", "environment", "entities", "events", "run"];
 
 /// Reads typed parts out of the tree and keeps what goes wrong.
 pub(super) struct Reader<'a> {
@@ -170,7 +172,7 @@ impl Reader<'_> {
         simulator: &Simulator,
         entity: &str,
         node: &Node,
-    ) -> Vec<(&'static str, Box<dyn super::registry::ParsedComponent>)> {
+    ) -> Vec<(&'static str, Arc<dyn super::registry::ParsedComponent>)> {
         let Kind::Struct { fields, .. } = &node.kind else {
             self.diagnostics.push(
                 Diagnostic::new("an entity is its components: `(Body: (..), Drag: ..)`")

@@ -4,6 +4,7 @@
 
 pub mod body_drag;
 pub mod buoyancy;
+pub mod reeled_spring;
 pub mod segment_drag;
 pub mod spring;
 pub mod weight;

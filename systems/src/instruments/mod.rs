@@ -8,3 +8,4 @@ pub mod energy;
 pub mod energy_guard;
 pub mod energy_sum;
 pub mod swing;
+pub mod winch;

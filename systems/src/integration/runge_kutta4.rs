@@ -83,4 +83,8 @@ impl Integrator for RungeKutta4 {
         equations.accept(&mut trajectory.state, &mut trajectory.rates);
         Ok(())
     }
+
+    fn resize(&mut self, _: &[f64]) {
+        // Every step asks for the length of the state.
+    }
 }
