@@ -111,7 +111,7 @@ fn a_cut_conserves_momentum_and_angular_momentum() {
         "tether": (
             Tether: (
                 from: ("a", Centre), to: ("b", Centre), length_m: 99.5, nodes: 6, diameter_m: 0.002,
-                density_kg_m3: 1440, axial_stiffness_n: 5e3, start: Straight,
+                density_kg_m3: 1440, axial_stiffness_n: 5e3, damping_n_s_m: 5, start: Straight,
             ),
             Motion: (velocity_m_s: (1, 0.4, 0.1)),
         ),
@@ -123,7 +123,12 @@ fn a_cut_conserves_momentum_and_angular_momentum() {
     ),
 )"#;
     let (results, summary) = summary_of(text, &[]);
-    let [cut] = summary.events.iter().filter(|e| e.kind == "cut").collect::<Vec<_>>()[..] else {
+    let [cut] = summary
+        .events
+        .iter()
+        .filter(|e| e.kind == "cut")
+        .collect::<Vec<_>>()[..]
+    else {
         panic!("{:?}", summary.events);
     };
     assert_eq!((cut.time_s, cut.entity.as_str()), (2.5, "tether/4"));
@@ -157,8 +162,15 @@ fn a_cut_conserves_momentum_and_angular_momentum() {
     for frame in &results.frames {
         assert_below("balance, J", (balance(frame) - first).abs(), 1e-7);
     }
-    let lost = channel(results.frames.last().unwrap(), "system", "nonconservative_work_j");
-    assert!(lost < -1e-3, "the stretch of the cut segment is lost: {lost} J");
+    let lost = channel(
+        results.frames.last().unwrap(),
+        "system",
+        "nonconservative_work_j",
+    );
+    assert!(
+        lost < -1e-3,
+        "the stretch of the cut segment is lost: {lost} J"
+    );
 }
 
 /// A body thrown up crosses an altitude at the root of a quadratic, and a mass on a spring pulls with a given
@@ -186,18 +198,29 @@ fn conditions_are_met_when_they_should_be() {
     // Thrown up at 5 m/s from 950 m, slack all the way: z = 950 + 5 t - g t^2 / 2.
     let down = (5.0 + (25.0_f64 + 2.0 * G * 10.0).sqrt()) / G;
     let up = (5.0 - (25.0_f64 - 2.0 * G * 1.0).sqrt()) / G;
-    for run in ["Auto(accuracy_m: 1e-6)", "Implicit(accuracy_m: 1e-6)", "Adaptive()", "Fixed(step_s: 0.05)"] {
+    for run in [
+        "Auto(accuracy_m: 1e-6)",
+        "Implicit(accuracy_m: 1e-6)",
+        "Adaptive()",
+        "Fixed(step_s: 0.05)",
+    ] {
         for (condition, expected) in [
             ("AltitudeBelow(entity: \"probe\", altitude_m: 940)", down),
             ("AltitudeAbove(entity: \"probe\", altitude_m: 951)", up),
-            ("AirspeedAbove(entity: \"probe\", airspeed_m_s: 10)", 15.0 / G),
+            (
+                "AirspeedAbove(entity: \"probe\", airspeed_m_s: 10)",
+                15.0 / G,
+            ),
         ] {
             let (_, summary) = summary_of(&text(condition, "950", run), &[]);
             let event = summary.events.iter().find(|event| event.kind == "cut");
             let at_s = event.unwrap().time_s;
             println!("{run}, {condition}: {at_s} s, expected {expected} s");
             // Known to 1e-6 s, and never early.
-            assert!(at_s > expected - 2e-7 && at_s < expected + 2e-6, "{at_s} {expected}");
+            assert!(
+                at_s > expected - 2e-7 && at_s < expected + 2e-6,
+                "{at_s} {expected}"
+            );
         }
     }
 }
@@ -226,7 +249,10 @@ fn a_line_is_cut_at_its_tension() {
     let (_, summary) = summary_of(&text, &[]);
     let at_s = summary.events[0].time_s;
     let expected = 2.0 * std::f64::consts::PI / 3.0 / 10.0_f64.sqrt();
-    assert!(at_s > expected - 2e-7 && at_s < expected + 2e-6, "{at_s} {expected}");
+    assert!(
+        at_s > expected - 2e-7 && at_s < expected + 2e-6,
+        "{at_s} {expected}"
+    );
 }
 
 #[test]
@@ -238,6 +264,10 @@ fn events_happen_the_same_way_twice() {
     let (second, again) = summary_of(&text, &[]);
     assert_eq!(first.frames, second.frames);
     assert_eq!(summary.events, again.events);
-    let kinds: Vec<&str> = summary.events.iter().map(|event| event.kind.as_str()).collect();
+    let kinds: Vec<&str> = summary
+        .events
+        .iter()
+        .map(|event| event.kind.as_str())
+        .collect();
     assert!(kinds.contains(&"release"), "{kinds:?}");
 }

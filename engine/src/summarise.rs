@@ -17,15 +17,17 @@ impl Simulation {
         let world = &self.world;
         let recorder = world.resource::<Recorder>();
         let events = world.resource::<EventLog>();
-        let largest_tension = recorder.largest_tension.map(|(tension_n, time_s, segment)| {
-            let tether = world.get::<EntityName>(segment.tether);
-            LargestTension {
-                tension_n,
-                time_s,
-                tether: tether.map_or_else(String::new, |name| name.0.to_string()),
-                segment: segment.number,
-            }
-        });
+        let largest_tension = recorder
+            .largest_tension
+            .map(|(tension_n, time_s, segment)| {
+                let tether = world.get::<EntityName>(segment.tether);
+                LargestTension {
+                    tension_n,
+                    time_s,
+                    tether: tether.map_or_else(String::new, |name| name.0.to_string()),
+                    segment: segment.number,
+                }
+            });
         let has_segments = self.stable_step.step_s.is_finite();
         Summary {
             version: VERSION,

@@ -25,10 +25,11 @@ pub struct EventsPlugin;
 
 impl Plugin for EventsPlugin {
     fn build(&self, simulator: &mut Simulator) {
-        simulator
-            .add_check(check)
-            .add_setup(set_up)
-            .add_systems_if(Phase::Constrain, has_events, || happen);
+        simulator.add_check(check).add_setup(set_up).add_systems_if(
+            Phase::Constrain,
+            has_events,
+            || happen,
+        );
     }
 }
 
@@ -266,4 +267,3 @@ fn check_winch(
         );
     }
 }
-

@@ -2,9 +2,7 @@
 
 use aerobot_components::run::Formulation;
 use aerobot_components::scene_component::FieldReport;
-use aerobot_components::state::{
-    Acceleration, FirstOrderState, Force, Mass, Position, Velocity,
-};
+use aerobot_components::state::{Acceleration, FirstOrderState, Force, Mass, Position, Velocity};
 use aerobot_components::tether::{Attachment, Lumping, Tether, TetherParts, TetherSide};
 use aerobot_components::winch::{Reeled, ReeledLine, Winch};
 use aerobot_systems::dynamics::rigid_body::CarriedMass;

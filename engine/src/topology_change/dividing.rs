@@ -22,7 +22,8 @@ use crate::builtin::tethers::{spawn_node, spawn_segment};
 
 /// Puts a node between the winch and the next point.
 pub(super) fn divide(world: &mut World, line: Entity) {
-    let (Some(reeled), Some(length_m)) = (world.get::<ReeledLine>(line).copied(), length(world, line))
+    let (Some(reeled), Some(length_m)) =
+        (world.get::<ReeledLine>(line).copied(), length(world, line))
     else {
         return;
     };
@@ -68,7 +69,8 @@ pub(super) fn divide(world: &mut World, line: Entity) {
 
 /// Takes the node next to the winch away, with the segment beyond it.
 pub(super) fn join(world: &mut World, line: Entity) {
-    let (Some(reeled), Some(length_m)) = (world.get::<ReeledLine>(line).copied(), length(world, line))
+    let (Some(reeled), Some(length_m)) =
+        (world.get::<ReeledLine>(line).copied(), length(world, line))
     else {
         return;
     };

@@ -118,7 +118,5 @@ fn log(world: &mut World, kind: &str, entity: Entity, part: Option<u32>) {
     if let Some(part) = part {
         name = format!("{name}/{part}");
     }
-    world
-        .resource_mut::<EventLog>()
-        .add(time_s, kind, &name);
+    world.resource_mut::<EventLog>().add(time_s, kind, &name);
 }

@@ -8,6 +8,7 @@ use aerobot_components::state::FirstOrderState;
 use aerobot_components::tether::TetherParts;
 use aerobot_components::winch::{Reeled, ReeledLine};
 use aerobot_systems::clock::Clock;
+use aerobot_systems::instruments::winch::ReelPower;
 use bevy_ecs::component::Component;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
@@ -94,7 +95,11 @@ pub(super) fn turn(world: &mut World, line: Entity, turn: Turn) {
         Turn::Divide => dividing::divide(world, line),
         Turn::Join => dividing::join(world, line),
         Turn::Done => end(world, line, None),
-        Turn::Empty => end(world, line, Some("has been paid out to the end of its drum")),
+        Turn::Empty => end(
+            world,
+            line,
+            Some("has been paid out to the end of its drum"),
+        ),
         Turn::Shortest => end(world, line, Some("has been reeled in as far as it can be")),
     }
     plan(world, line);
@@ -112,7 +117,7 @@ pub(super) fn abandon(world: &mut World, segment: Entity) {
         end(world, line, None);
     }
     // Masses stay; work done stays, at a power of zero.
-    world.entity_mut(line).remove::<ReeledLine>();
+    world.entity_mut(line).remove::<(ReeledLine, ReelPower)>();
     if let Some(mut state) = world.get_mut::<FirstOrderState>(line) {
         state.rate_per_s = 0.0;
     }

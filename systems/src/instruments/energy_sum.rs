@@ -15,8 +15,8 @@ use aerobot_components::tether::Attachment;
 use bevy_ecs::query::{QueryData, With, Without};
 use bevy_ecs::system::{Query, Res, SystemParam};
 
-use crate::dynamics::link_mechanism::LinkMechanism;
 use super::winch::ReelPower;
+use crate::dynamics::link_mechanism::LinkMechanism;
 use crate::environment::EnvironmentModel;
 
 /// What the air that moves with a body is taken for.

@@ -73,8 +73,8 @@ pub fn winch_power(
         power.by_damper_w = -rate * (tension.0 - elastic_n) * (1.0 + strain);
         let flow_kg_s = 0.5 * line.line_kg_m * rate;
         let gravity = environment.gravity;
-        let by_height = flow_kg_s
-            * (gravity.potential_j_kg(far.0.0.z) - gravity.potential_j_kg(near.0.0.z));
+        let by_height =
+            flow_kg_s * (gravity.potential_j_kg(far.0.0.z) - gravity.potential_j_kg(near.0.0.z));
         let by_speed = 0.5 * flow_kg_s * (far.1.0.length_squared() - near.1.0.length_squared());
         power.by_change_w = by_spring + by_height + by_speed;
         power.winch_w = by_spring + by_height + power.by_damper_w;
