@@ -111,7 +111,7 @@ fn a_cut_conserves_momentum_and_angular_momentum() {
         "tether": (
             Tether: (
                 from: ("a", Centre), to: ("b", Centre), length_m: 99.5, nodes: 6, diameter_m: 0.002,
-                density_kg_m3: 1440, axial_stiffness_n: 5e3, damping_n_s_m: 5, start: Straight,
+                density_kg_m3: 1440, axial_stiffness_n: 5e3, damping_n_s_m: 5, slack: false, start: Straight,
             ),
             Motion: (velocity_m_s: (1, 0.4, 0.1)),
         ),
