@@ -73,3 +73,8 @@ pub struct SegmentLoad {
 /// Marks a segment that keeps its length: a rigid link, whose tension is a force of constraint.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RigidLink;
+
+/// Marks a segment that was cut: it has no [`KelvinVoigt`] and no [`SegmentDrag`] any more, and nothing
+/// passes through it. Its two ends keep the halves of its mass.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Severed;

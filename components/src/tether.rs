@@ -314,7 +314,8 @@ pub struct Attachment {
 }
 
 /// The two ends of a tether.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename = "end")]
 pub enum TetherSide {
     /// The end from which nodes and segments count.
     From,

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use aerobot_components::aerodynamics::{RadiusRule, Sphere};
 use aerobot_components::body::Body;
 use aerobot_components::tether::Tether;
+use aerobot_components::winch::Winch;
 use aerobot_systems::environment::atmosphere::Atmosphere;
 
 use crate::scene::{Scene, SetupError};
@@ -76,7 +77,10 @@ pub fn tethered_mass_kg(scene: &Scene, name: &str) -> f64 {
     let tethers: f64 = scene
         .with::<Tether>()
         .filter(|(_, tether)| together.contains(&tether.from.0.as_str()))
-        .map(|(_, tether)| tether.lumped_mass_kg())
+        .map(|(entity, tether)| {
+            let stored_m = entity.get::<Winch>().map_or(0.0, |winch| winch.stored_m);
+            tether.lumped_mass_kg() + stored_m * tether.mass_kg() / tether.length_m
+        })
         .sum();
     bodies + tethers
 }

@@ -1,26 +1,24 @@
 //! Building a simulation: a world, its schedules, everything in its place, the integrator.
 
+use std::sync::Arc;
+
 use aerobot_components::run::Formulation;
-use aerobot_systems::denoc::stage_system::LinkStages;
-use aerobot_systems::dynamics::joint_vector::JointVector;
-use aerobot_systems::dynamics::state_space::{Layout, StateSpace};
-use aerobot_systems::dynamics::state_vector::StateVector;
+use aerobot_systems::dynamics::state_space::StateSpace;
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::fault::Fault;
 use aerobot_systems::instruments::energy_guard::mechanical_energy;
 use aerobot_systems::integration::Trajectory;
-use aerobot_systems::linearised_motion::shifted_system::ShiftedSystem;
-use aerobot_systems::linearised_motion::stage_solver::StageSolver;
-use aerobot_systems::linearised_motion::topology::Topology;
 use bevy_ecs::world::World;
 
 use crate::builtin::channels::find_supports;
 use crate::builtin::tethers::has_links;
+use crate::coordinates::Coordinates;
 use crate::evaluation::{Evaluation, Implicit, Integration, IntegrationSlot};
-use crate::integrator_choice::{Choice, choose_integrator, is_linearised};
+use crate::integrator_choice::{Choice, choose_integrator};
 use crate::linearisation::Linearisation;
 use crate::link_start::Start;
 use crate::plugin::Simulator;
+use crate::restructure::SceneOfWorld;
 use crate::scene::{Scene, SceneError, SetupError};
 use crate::schedule::{self, EVALUATE, Evaluate, LINEARISE, Linearise, STEP, Step};
 use crate::sequence::Sequence;
@@ -28,7 +26,7 @@ use crate::simulation::{SceneFacts, Simulation};
 use crate::stable_step::{self, StableStep};
 use crate::stopping::owner_name;
 use crate::world::{build_world, lay_out_state};
-use crate::{link_stable_step, link_tree, placement, topology};
+use crate::{link_stable_step, placement};
 
 impl Simulator {
     /// Builds the world of a scene and places everything in it.
@@ -44,12 +42,16 @@ impl Simulator {
         placement::place(&mut world, schedules.forces(), scene).map_err(refuse)?;
         find_supports(&mut world);
         start_environment(&mut world);
-        let mut coordinates = coordinates(&mut world, scene, layout).map_err(refuse)?;
-        let trajectory = start(&mut world, scene, &mut schedules, &mut *coordinates.state)?;
-        let (scales, mut linearisation) =
-            linearisation(&mut world, schedules.linearise, &mut coordinates);
-        let state = &mut *coordinates.state;
-        let stable_step = stable_step(&mut world, scene, &mut linearisation, state);
+        let Coordinates {
+            mut state,
+            linearised,
+        } = Coordinates::of(&mut world, scene, layout).map_err(refuse)?;
+        let trajectory = start(&mut world, scene, &mut schedules, &mut *state)?;
+        let scales = state.error_scales(&mut world);
+        let first_order = scales[2 * state.layout().coordinates..].to_vec();
+        let mut linearisation =
+            Linearisation::new(&mut world, schedules.linearise, first_order, linearised);
+        let stable_step = stable_step(&mut world, scene, &mut linearisation, &mut *state);
         let Choice {
             integrator,
             step_s,
@@ -58,7 +60,7 @@ impl Simulator {
         let integration = Integration {
             evaluation: schedules.evaluation,
             statics: schedules.statics,
-            state: coordinates.state,
+            state,
             implicit: Implicit {
                 linearisation,
                 energy: world.register_system(mechanical_energy),
@@ -69,6 +71,7 @@ impl Simulator {
             failure: None,
         };
         world.insert_resource(IntegrationSlot::new(integration));
+        world.insert_resource(SceneOfWorld(Arc::new(scene.clone())));
         let facts = SceneFacts {
             name: scene.name.clone(),
             seed: scene.run.seed,
@@ -142,21 +145,6 @@ fn start(
     Ok(trajectory)
 }
 
-/// The scales of errors, and the linearised motion.
-fn linearisation(
-    world: &mut World,
-    schedule: Sequence,
-    coordinates: &mut Coordinates,
-) -> (Vec<f64>, Linearisation) {
-    let scales = coordinates.state.error_scales(world);
-    let first_order = scales[2 * coordinates.state.layout().coordinates..].to_vec();
-    let topology = std::mem::take(&mut coordinates.topology);
-    let solver = coordinates.solver.take();
-    let solver = solver.unwrap_or_else(|| Box::new(ShiftedSystem::new(topology.clone())));
-    let linearisation = Linearisation::new(world, schedule, first_order, topology, solver);
-    (scales, linearisation)
-}
-
 fn stable_step(
     world: &mut World,
     scene: &Scene,
@@ -175,45 +163,6 @@ fn stable_step(
     } else {
         of_links
     }
-}
-
-/// What a formulation counts motion in.
-struct Coordinates {
-    state: Box<dyn StateSpace>,
-    /// Empty where the integrator never asks for it.
-    topology: Topology,
-    /// Of the lumped formulation there is none: it follows from the topology.
-    solver: Option<Box<dyn StageSolver>>,
-}
-
-fn coordinates(
-    world: &mut World,
-    scene: &Scene,
-    layout: Layout,
-) -> Result<Coordinates, SetupError> {
-    if has_links(scene, scene.run.formulation) {
-        let found = topology::find(world, layout)?;
-        let mechanism = link_tree::build(world, scene, &found);
-        let (tree, tips_kg) = (mechanism.tree.clone(), mechanism.entities.tips_kg.clone());
-        world.insert_resource(mechanism);
-        let state = JointVector::new(world, layout.first_order);
-        let solver = LinkStages::new(tree, found.topology.clone(), state.places(), tips_kg);
-        return Ok(Coordinates {
-            state: Box::new(state),
-            topology: found.topology,
-            solver: Some(Box::new(solver)),
-        });
-    }
-    let topology = if is_linearised(&scene.run.integrator) {
-        topology::find(world, layout)?.topology
-    } else {
-        Topology::default()
-    };
-    Ok(Coordinates {
-        state: Box::new(StateVector::new(world, layout)),
-        solver: None,
-        topology,
-    })
 }
 
 /// A start that cannot be evaluated, rendered.

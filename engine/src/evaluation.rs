@@ -14,6 +14,7 @@ use bevy_ecs::resource::Resource;
 use bevy_ecs::system::SystemId;
 use bevy_ecs::world::World;
 
+use crate::event_location;
 use crate::linearisation::Linearisation;
 use crate::sequence::Sequence;
 use crate::world::{Discontinuity, Edges};
@@ -205,7 +206,7 @@ fn advance(world: &mut World, integration: &mut Integration) -> Result<(), StepF
             state,
             implicit,
         };
-        integrator.step(&mut equations, trajectory, *limit_s)?;
+        event_location::step(&mut **integrator, &mut equations, trajectory, *limit_s)?;
         begin_interval(world, trajectory);
     }
     // On an edge the accepted state is seen with what holds from the edge on.

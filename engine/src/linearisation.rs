@@ -7,10 +7,12 @@ use aerobot_components::state::{
     AddedInertia, Attitude, Force, Inertia, Mass, Position, StateIndex,
 };
 use aerobot_components::tether::{Attachment, TetherNode, TetherPoint};
+use aerobot_components::winch::{Reeled, ReeledLine};
+use aerobot_systems::dynamics::first_order::FirstOrderIndex;
 use aerobot_systems::dynamics::rigid_body::CarriedMass;
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::linearised_motion::body_block::{BodyBlock, Place};
-use aerobot_systems::linearised_motion::derivatives::{Derivatives, LinearSegment};
+use aerobot_systems::linearised_motion::derivatives::{Derivatives, LinearReel, LinearSegment};
 use aerobot_systems::linearised_motion::error_norm::{position_error, strain_error};
 use aerobot_systems::linearised_motion::stage_solver::{Change, StageSolver};
 use aerobot_systems::linearised_motion::symmetric3::Symmetric3;
@@ -56,6 +58,7 @@ pub(crate) struct Linearisation {
     bodies: QueryState<Bodies, Without<Anchor>>,
     ends: QueryState<(&'static LineEnd, &'static Attachment, &'static Force)>,
     attitudes: QueryState<&'static Attitude>,
+    reels: QueryState<(&'static ReeledLine, &'static FirstOrderIndex)>,
 }
 
 impl Linearisation {
@@ -65,9 +68,40 @@ impl Linearisation {
         world: &mut World,
         schedule: Sequence,
         first_order_scales: Vec<f64>,
+        (topology, solver): (Topology, Box<dyn StageSolver>),
+    ) -> Self {
+        let mut linearisation = Self {
+            least_tension_n: 0.0,
+            schedule,
+            topology: Topology::default(),
+            solver,
+            derivatives: Derivatives::default(),
+            first_order_scales: Vec::new(),
+            has_slack: false,
+            segments: world.query(),
+            nodes: world.query_filtered(),
+            bodies: world.query_filtered(),
+            ends: world.query(),
+            attitudes: world.query(),
+            reels: world.query(),
+        };
+        linearisation.take(world, first_order_scales, topology);
+        linearisation
+    }
+
+    /// The same for a topology that has changed.
+    pub(crate) fn renew(
+        &mut self,
+        world: &mut World,
+        first_order_scales: Vec<f64>,
         topology: Topology,
         solver: Box<dyn StageSolver>,
-    ) -> Self {
+    ) {
+        self.solver = solver;
+        self.take(world, first_order_scales, topology);
+    }
+
+    fn take(&mut self, world: &mut World, first_order_scales: Vec<f64>, topology: Topology) {
         let mut derivatives = Derivatives::new(&topology);
         let mut masses = world.query_filtered::<(&TetherPoint, &Mass), With<TetherNode>>();
         for (point, mass) in masses.iter(world) {
@@ -79,20 +113,14 @@ impl Linearisation {
             .resource::<EnvironmentModel>()
             .gravity
             .acceleration_m_s2(0.0);
-        Self {
-            least_tension_n: least_tension_n(world),
-            schedule,
-            topology,
-            solver,
-            derivatives,
-            first_order_scales,
-            has_slack: false,
-            segments: world.query(),
-            nodes: world.query_filtered(),
-            bodies: world.query_filtered(),
-            ends: world.query(),
-            attitudes: world.query(),
-        }
+        self.least_tension_n = least_tension_n(world);
+        self.derivatives = derivatives;
+        self.bodies.update_archetypes(world);
+        self.ends.update_archetypes(world);
+        self.attitudes.update_archetypes(world);
+        self.reels.update_archetypes(world);
+        self.first_order_scales = first_order_scales;
+        self.topology = topology;
     }
 
     /// Finds masses and derivatives at the state that was evaluated last.
@@ -133,6 +161,30 @@ impl Linearisation {
                 Symmetric3::default().plus_scaled(Symmetric3::part_of(own.by_position_n_m), -1.0);
         }
         self.linearise_bodies(world);
+        self.linearise_reels(world);
+    }
+
+    fn linearise_reels(&mut self, world: &World) {
+        let derivatives = &mut self.derivatives;
+        derivatives.reels.clear();
+        for (line, state) in self.reels.iter_manual(world) {
+            if let (Some(point), Some(mass)) = (
+                world.get::<TetherPoint>(line.far),
+                world.get::<Mass>(line.far),
+            ) {
+                derivatives.points[point.index].mass_kg = mass.0;
+            }
+            if let (Some(segment), Some(reeled)) = (
+                world.get::<Segment>(line.segment),
+                world.get::<Reeled>(line.segment),
+            ) {
+                derivatives.reels.push(LinearReel {
+                    segment: segment.from_point,
+                    state: state.0,
+                    tension_by_length_n_m: reeled.tension_by_length_n_m,
+                });
+            }
+        }
     }
 
     fn linearise_bodies(&mut self, world: &World) {

@@ -7,6 +7,7 @@ use aerobot_components::segment::{KelvinVoigt, Segment, SegmentGeometry};
 use aerobot_components::state::{AddedInertia, Attitude, Inertia, Mass};
 use aerobot_components::tether::{Attachment, TetherPoint};
 use aerobot_components::torsion::{Torsion, Twist};
+use aerobot_components::winch::Reeled;
 use aerobot_systems::dynamics::rigid_body::CarriedMass;
 use aerobot_systems::integration::stability::largest_stable_step_s;
 use aerobot_systems::integration::stable_step::{BodyMobility, Mobility, StiffSegment, stiffest};
@@ -159,14 +160,18 @@ fn damping_is_proportional(segments: &[StiffSegment]) -> bool {
 
 fn segments(world: &mut World) -> (Vec<StiffSegment>, Vec<String>) {
     let mut found: Vec<(Segment, StiffSegment)> = world
-        .query::<(&Segment, &KelvinVoigt, &SegmentGeometry)>()
+        .query::<(&Segment, &KelvinVoigt, &SegmentGeometry, Option<&Reeled>)>()
         .iter(world)
-        .map(|(segment, spring, geometry)| {
+        .map(|(segment, spring, geometry, reeled)| {
+            // At a winch it becomes shorter, and the node beyond it lighter.
+            let part = reeled.map_or(1.0, |reeled| {
+                reeled.shortest_part * 0.5 * (1.0 + reeled.shortest_part)
+            });
             let stiff = StiffSegment {
                 from_point: segment.from_point,
                 direction: geometry.direction,
-                stiffness_n_m: spring.stiffness_n_m,
-                damping_n_s_m: spring.damping_n_s_m,
+                stiffness_n_m: spring.stiffness_n_m / part,
+                damping_n_s_m: spring.damping_n_s_m / part,
             };
             (*segment, stiff)
         })

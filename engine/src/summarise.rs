@@ -5,7 +5,7 @@ use aerobot_components::state::{AngularVelocity, Attitude, Position, Velocity};
 use aerobot_systems::forces::body_drag::BeyondMorrison;
 use bevy_ecs::world::World;
 
-use crate::builtin::recorder::{Recorder, segment_name};
+use crate::builtin::recorder::Recorder;
 use crate::recording::summary::{EventRow, FinalState, LargestTension, Stop, Summary, VERSION};
 use crate::simulation::Simulation;
 use crate::world::{EntityName, EventLog, SceneEntities, Warnings};
@@ -17,15 +17,17 @@ impl Simulation {
         let world = &self.world;
         let recorder = world.resource::<Recorder>();
         let events = world.resource::<EventLog>();
-        let largest_tension = recorder.largest_tension.map(|(tension_n, time_s, entity)| {
-            let (tether, segment) = segment_name(world, entity);
-            LargestTension {
-                tension_n,
-                time_s,
-                tether,
-                segment,
-            }
-        });
+        let largest_tension = recorder
+            .largest_tension
+            .map(|(tension_n, time_s, segment)| {
+                let tether = world.get::<EntityName>(segment.tether);
+                LargestTension {
+                    tension_n,
+                    time_s,
+                    tether: tether.map_or_else(String::new, |name| name.0.to_string()),
+                    segment: segment.number,
+                }
+            });
         let has_segments = self.stable_step.step_s.is_finite();
         Summary {
             version: VERSION,

@@ -7,6 +7,7 @@ use aerobot_components::run::ChannelSelection;
 use aerobot_components::scene_component::FieldReport;
 use aerobot_components::state::{Air, FirstOrderState, Inertia, Position};
 use aerobot_components::tether::{Attachment, Tether, TetherParts};
+use aerobot_components::winch::Winch;
 use aerobot_systems::clock::Clock;
 use aerobot_systems::dynamics::attachments::accelerate_attachments;
 use aerobot_systems::instruments::airspeed::{AIRSPEED, airspeed};
@@ -20,6 +21,7 @@ use aerobot_systems::instruments::energy::{
 };
 use aerobot_systems::instruments::swing::{SWING, SWING_X, SWING_Y, Support, swing};
 use aerobot_systems::instruments::twist::{TORSION, TWIST, twist};
+use aerobot_systems::instruments::winch::{LINE_OUT, WINCH_POWER, WINCH_WORK, winch};
 use bevy_ecs::entity::Entity;
 use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::system::{IntoSystem, Res};
@@ -36,6 +38,16 @@ use crate::world::{SceneEntities, next_spawn_order};
 const BODY_CHANNELS: [&str; 6] = [AIRSPEED, TILT, HEADING, SWING, SWING_X, SWING_Y];
 const TETHER_CHANNELS: [&str; 2] = [TENSION_FROM, TENSION_TO];
 const TWISTED_TETHER_CHANNELS: [&str; 4] = [TENSION_FROM, TENSION_TO, TWIST, TORSION];
+const WINCH_CHANNELS: [&str; 5] = [TENSION_FROM, TENSION_TO, WINCH_POWER, WINCH_WORK, LINE_OUT];
+const TWISTED_WINCH_CHANNELS: [&str; 7] = [
+    TENSION_FROM,
+    TENSION_TO,
+    TWIST,
+    TORSION,
+    WINCH_POWER,
+    WINCH_WORK,
+    LINE_OUT,
+];
 const SYSTEM_CHANNELS: [&str; 4] = [KINETIC, POTENTIAL, MECHANICAL, WORK];
 
 /// Airspeed, tilt, heading, swing, attachment tensions, twist and energy.
@@ -57,6 +69,7 @@ impl Plugin for ChannelsPlugin {
                     .run_if(channels_due)
             })
             .add_systems_if(Phase::Observe, has_torsion, || twist.run_if(channels_due))
+            .add_systems_for::<Winch, _, _>(Phase::Observe, || winch.run_if(channels_due))
             .add_systems_if(Phase::Observe, records_energy, || {
                 energy.run_if(channels_due)
             });
@@ -66,10 +79,11 @@ impl Plugin for ChannelsPlugin {
 /// The channels that exist on an entity of a scene.
 fn known_channels(entity: &SceneEntity) -> &'static [&'static str] {
     if let Some(tether) = entity.get::<Tether>() {
-        if tether.torsion.is_some() {
-            &TWISTED_TETHER_CHANNELS
-        } else {
-            &TETHER_CHANNELS
+        match (tether.torsion.is_some(), entity.has::<Winch>()) {
+            (false, false) => &TETHER_CHANNELS,
+            (true, false) => &TWISTED_TETHER_CHANNELS,
+            (false, true) => &WINCH_CHANNELS,
+            (true, true) => &TWISTED_WINCH_CHANNELS,
         }
     } else if entity.has::<Body>() {
         &BODY_CHANNELS
@@ -241,6 +255,7 @@ pub(crate) fn is_built_in(channel: &str) -> bool {
     [
         &BODY_CHANNELS[..],
         &TWISTED_TETHER_CHANNELS,
+        &WINCH_CHANNELS,
         &SYSTEM_CHANNELS,
     ]
     .iter()

@@ -4,11 +4,13 @@ pub mod aerodynamics;
 pub mod bodies;
 pub mod channels;
 pub mod environment;
+pub mod events;
 pub mod links;
 pub mod recorder;
 pub mod slack_events;
 pub mod tethers;
 pub mod torsion;
+pub mod winches;
 
 use aerobot_components::copies::Copies;
 
@@ -24,10 +26,12 @@ pub(crate) fn register(simulator: &mut Simulator) {
         .add_plugin(&aerodynamics::AerodynamicsPlugin)
         .add_plugin(&tethers::TethersPlugin)
         .add_plugin(&torsion::TorsionPlugin)
+        .add_plugin(&winches::WinchesPlugin)
         .add_plugin(&bodies::MotionPlugin)
         .add_plugin(&links::LinksPlugin)
         .add_plugin(&channels::ChannelsPlugin)
         .add_plugin(&slack_events::SlackEventsPlugin)
         .add_plugin(&recorder::RecorderPlugin)
+        .add_plugin(&events::EventsPlugin)
         .add_systems(Phase::Integrate, || crate::evaluation::integrate);
 }

@@ -52,8 +52,8 @@ pub struct Recorder {
     pub frame: Frame,
     /// A channel whose value was not finite, and its entity.
     pub not_finite: Option<(Arc<str>, &'static str)>,
-    /// The largest tension so far (N), its time (s) and its segment.
-    pub largest_tension: Option<(f64, f64, Entity)>,
+    /// The largest tension so far (N), its time (s) and its segment as it was then.
+    pub largest_tension: Option<(f64, f64, Segment)>,
 }
 
 impl Recorder {
@@ -109,7 +109,7 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
         Cadence::Every { period_s } => Some(Sampling::every(period_s)),
         Cadence::Never => None,
     };
-    let mut recorder = Recorder {
+    let recorder = Recorder {
         bodies: sampling(run.record.bodies),
         nodes: sampling(run.record.nodes),
         tethers: sampling(run.record.tethers),
@@ -123,43 +123,51 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
         not_finite: None,
         largest_tension: None,
     };
+    world.insert_resource(recorder);
+    bind_rows(world);
+    Ok(())
+}
+
+/// Finds which entities the rows of states and segments are of.
+pub(crate) fn bind_rows(world: &mut World) {
+    let (mut bodies, mut nodes, mut segments) = (Vec::new(), Vec::new(), Vec::new());
     for &entity in world.resource::<SceneEntities>().in_order() {
         let Some(EntityName(name)) = world.get(entity) else {
             continue;
         };
         if world.get::<Attitude>(entity).is_some() {
-            recorder.body_rows.push((name.clone(), entity));
+            bodies.push((name.clone(), entity));
         }
         let Some(parts) = world.get::<TetherParts>(entity) else {
             continue;
         };
         for point in &parts.points {
             if let Some(EntityName(node)) = world.get(*point) {
-                recorder.node_rows.push((node.clone(), *point));
+                nodes.push((node.clone(), *point));
             }
         }
         for (index, segment) in parts.segments.iter().enumerate() {
-            recorder
-                .segment_rows
-                .push((name.clone(), index as u32 + 1, *segment));
+            segments.push((name.clone(), index as u32 + 1, *segment));
         }
     }
-    world.insert_resource(recorder);
-    Ok(())
+    let mut recorder = world.resource_mut::<Recorder>();
+    recorder.body_rows = bodies;
+    recorder.node_rows = nodes;
+    recorder.segment_rows = segments;
 }
 
 fn track_largest_tension(
     clock: Res<Clock>,
     mut recorder: ResMut<Recorder>,
-    segments: Query<(Entity, &Tension)>,
+    segments: Query<(&Segment, &Tension)>,
 ) {
     let mut largest = recorder
         .largest_tension
         .map_or(f64::NEG_INFINITY, |found| found.0);
-    for (entity, tension) in &segments {
+    for (segment, tension) in &segments {
         if tension.0 > largest {
             largest = tension.0;
-            recorder.largest_tension = Some((tension.0, clock.time_s, entity));
+            recorder.largest_tension = Some((tension.0, clock.time_s, *segment));
         }
     }
 }

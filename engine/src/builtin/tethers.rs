@@ -21,6 +21,7 @@ use aerobot_systems::dynamics::rigid_body::CarriedMass;
 use aerobot_systems::dynamics::segments::{PointArrays, load_points, segment_geometry};
 use aerobot_systems::forces::segment_drag::{segment_drag, segment_drag_derivatives};
 use aerobot_systems::forces::spring::{rigid_link_derivatives, spring, spring_derivatives};
+use bevy_ecs::bundle::Bundle;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::world::World;
@@ -257,13 +258,7 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
                         TetherPoint {
                             index: points + place,
                         },
-                        Free,
-                        Mass(tether.node_mass_kg(lumping)),
-                        Position::default(),
-                        Origin::default(),
-                        Velocity(velocity),
-                        Force::default(),
-                        Acceleration::default(),
+                        node(tether.node_mass_kg(lumping), DVec3::ZERO, velocity),
                     ))
                     .id(),
             );
@@ -284,6 +279,37 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
     }
     world.insert_resource(PointArrays::new(points));
     Ok(())
+}
+
+/// A node of a mass (kg) at a place (m) with a velocity (m/s).
+fn node(mass_kg: f64, position_m: DVec3, velocity_m_s: DVec3) -> impl Bundle {
+    (
+        Free,
+        Mass(mass_kg),
+        Position(position_m),
+        Origin(position_m),
+        Velocity(velocity_m_s),
+        Force::default(),
+        Acceleration::default(),
+    )
+}
+
+/// A node that comes in during a run; its name, number and place in the order are given when all are known.
+pub(crate) fn spawn_node(
+    world: &mut World,
+    tether: Entity,
+    mass_kg: f64,
+    (position_m, velocity_m_s): (DVec3, DVec3),
+) -> Entity {
+    let unnumbered = (
+        EntityName("".into()),
+        SpawnOrder(0),
+        TetherNode { tether, number: 0 },
+        TetherPoint { index: 0 },
+    );
+    world
+        .spawn((unnumbered, node(mass_kg, position_m, velocity_m_s)))
+        .id()
 }
 
 fn spawn_attachment(
@@ -316,7 +342,7 @@ fn spawn_attachment(
         .id()
 }
 
-fn spawn_segment(
+pub(crate) fn spawn_segment(
     world: &mut World,
     tether_id: Entity,
     tether: &Tether,

@@ -15,7 +15,7 @@ mod guess;
 mod nodes;
 mod rigid_lengths;
 mod sites;
-mod snapshot;
+pub(crate) mod snapshot;
 mod stability;
 mod steady;
 mod tethered_system;

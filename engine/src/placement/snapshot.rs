@@ -8,14 +8,14 @@ use bevy_ecs::world::World;
 use aerobot_components::tether::Attachment;
 
 /// The state of motion of everything that has one; attachments follow their carriers.
-pub(super) struct Snapshot {
+pub(crate) struct Snapshot {
     points: Vec<(Entity, Position, Velocity)>,
     turns: Vec<(Entity, Attitude, AngularVelocity)>,
 }
 
 impl Snapshot {
     /// As it is now.
-    pub(super) fn of(world: &mut World) -> Self {
+    pub(crate) fn of(world: &mut World) -> Self {
         let points = world
             .query_filtered::<(Entity, &Position, &Velocity), Without<Attachment>>()
             .iter(world)
@@ -30,7 +30,7 @@ impl Snapshot {
     }
 
     /// Puts everything back.
-    pub(super) fn restore(&self, world: &mut World) {
+    pub(crate) fn restore(&self, world: &mut World) {
         for (entity, position, velocity) in &self.points {
             world.entity_mut(*entity).insert((*position, *velocity));
         }

@@ -1,6 +1,8 @@
 //! Entities that stand for others: a ring of tethers, copies of an entity. What is wrong with one of
 //! those is said of the place where it is written.
 
+use std::sync::Arc;
+
 use std::collections::BTreeMap;
 
 use aerobot_components::run::{ChannelSelection, InstrumentSelection, RecordSpec};
@@ -43,9 +45,9 @@ impl Expansion {
             let mut member = Some(member);
             let components = entity.components.iter().filter_map(|(name, component)| {
                 if *name == self.written {
-                    member.take().map(|member| (self.member, member))
+                    member.take().map(|member| (self.member, Arc::from(member)))
                 } else {
-                    Some((*name, component.boxed_clone()))
+                    Some((*name, component.clone()))
                 }
             });
             SceneEntity {

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use aerobot_components::environment::{AtmosphereSpec, Environment};
+use aerobot_components::events::EventSpec;
 use aerobot_components::run::RunSpec;
 use aerobot_components::scene_component::{FieldReport, Violation};
 
@@ -80,6 +81,7 @@ impl Simulator {
         let about: Option<String> = reader.optional(&fields, "about", String::new);
         let environment: Option<Environment> =
             reader.optional(&fields, "environment", Environment::default);
+        let events: Option<Vec<EventSpec>> = reader.optional(&fields, "events", Vec::new);
         let run: Option<RunSpec> = reader.required(&fields, root, "run");
         let written = reader.entities(self, &fields, root);
         let mut diagnostics = reader.diagnostics;
@@ -91,6 +93,9 @@ impl Simulator {
         }
         if let Some(run) = &run {
             report.within("run", |report| run.check(report));
+        }
+        for (index, event) in events.iter().flatten().enumerate() {
+            report.within(&format!("events.{index}"), |report| event.check(report));
         }
         let mut tables = Tables::default();
         if let Some(environment) = &environment {
@@ -113,6 +118,7 @@ impl Simulator {
             environment: environment.unwrap_or_else(placeholder_environment),
             entities,
             groups,
+            events: events.unwrap_or_default(),
             run,
             tables,
             source,

@@ -14,8 +14,10 @@ pub mod source;
 pub mod tables;
 
 use std::fmt;
+use std::sync::Arc;
 
 use aerobot_components::environment::Environment;
+use aerobot_components::events::EventSpec;
 use aerobot_components::run::RunSpec;
 use aerobot_components::scene_component::{SceneComponent, Violation};
 
@@ -25,6 +27,7 @@ use source::{Diagnostic, Source};
 use tables::Tables;
 
 /// A scene: named entities with their components, their environment, and how it is run.
+#[derive(Clone)]
 pub struct Scene {
     /// Name of the scene; also of its default output folder.
     pub name: String,
@@ -36,6 +39,8 @@ pub struct Scene {
     pub entities: Vec<SceneEntity>,
     /// Which entities of the file stand for which others.
     pub groups: Groups,
+    /// What happens during the run, in the order of the file.
+    pub events: Vec<EventSpec>,
     /// How it is run.
     pub run: RunSpec,
     /// The tables that it reads from files beside it.
@@ -45,11 +50,12 @@ pub struct Scene {
 }
 
 /// One named entity of a scene.
+#[derive(Clone)]
 pub struct SceneEntity {
     /// Its name.
     pub name: String,
     /// Its components with their names, in the order of the file.
-    pub components: Vec<(&'static str, Box<dyn ParsedComponent>)>,
+    pub components: Vec<(&'static str, Arc<dyn ParsedComponent>)>,
     /// Whether all of it could be read. A check is also run on a scene that is refused in any case;
     /// of an entity that is not complete it cannot know what is missing.
     pub complete: bool,

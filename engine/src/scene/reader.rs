@@ -1,5 +1,7 @@
 //! Reads the typed parts of a scene out of its tree, one by one, and keeps what goes wrong with each.
 
+use std::sync::Arc;
+
 use aerobot_components::copies::Copies;
 use glam::DVec3;
 use serde::de::DeserializeOwned;
@@ -10,7 +12,7 @@ use super::source::{Diagnostic, Field, Kind, Node, nearest, parse_fields, scan};
 use super::{SceneEntity, copies};
 use crate::plugin::Simulator;
 
-const ROOT_FIELDS: [&str; 5] = ["name", "about", "environment", "entities", "run"];
+const ROOT_FIELDS: [&str; 6] = ["name", "about", "environment", "entities", "events", "run"];
 
 /// An entity as it is written, and its copies if it has `Copies`.
 pub(super) struct Written {
@@ -203,7 +205,7 @@ impl Reader<'_> {
         simulator: &Simulator,
         entity: &str,
         node: &Node,
-    ) -> Vec<(&'static str, Box<dyn ParsedComponent>)> {
+    ) -> Vec<(&'static str, Arc<dyn ParsedComponent>)> {
         let Kind::Struct { fields, .. } = &node.kind else {
             self.diagnostics.push(
                 Diagnostic::new("an entity is its components: `(Body: (..), Drag: ..)`")
@@ -261,7 +263,7 @@ impl Reader<'_> {
         entity: &SceneEntity,
         node: &Node,
         number: u32,
-    ) -> Vec<(&'static str, Box<dyn ParsedComponent>)> {
+    ) -> Vec<(&'static str, Arc<dyn ParsedComponent>)> {
         let Kind::Struct { fields, .. } = &node.kind else {
             return Vec::new();
         };
@@ -281,7 +283,7 @@ impl Reader<'_> {
             {
                 let path = format!("entities.{}.{name}", entity.name);
                 match (entry.parse)(&text, &value, &path) {
-                    Ok(own) => component = own,
+                    Ok(own) => component = own.boxed_clone(),
                     Err(found) => {
                         let placed = found.into_iter().map(|d| d.at(field.name_span.clone()));
                         self.diagnostics.extend(placed);
@@ -290,7 +292,7 @@ impl Reader<'_> {
                 }
             }
             copies::shift(&mut *component, f64::from(number - 1) * step_m);
-            components.push((*name, component));
+            components.push((*name, Arc::from(component)));
         }
         components
     }

@@ -2,6 +2,7 @@
 
 use std::any::{Any, TypeId};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use aerobot_components::scene_component::{FieldReport, SceneComponent};
 use bevy_ecs::world::EntityWorldMut;
@@ -46,7 +47,7 @@ impl<C: SceneComponent> ParsedComponent for C {
     }
 }
 
-type Parser = fn(&str, &Node, &str) -> Result<Box<dyn ParsedComponent>, Vec<Diagnostic>>;
+type Parser = fn(&str, &Node, &str) -> Result<Arc<dyn ParsedComponent>, Vec<Diagnostic>>;
 
 /// One kind of component.
 pub struct ComponentEntry {
@@ -73,7 +74,7 @@ impl ComponentEntry {
             type_id: TypeId::of::<C>(),
             parse: |text, node, path| {
                 parse_fields::<C>(text, node, path)
-                    .map(|component| Box::new(component) as Box<dyn ParsedComponent>)
+                    .map(|component| Arc::new(component) as Arc<dyn ParsedComponent>)
             },
         }
     }

@@ -11,7 +11,7 @@ use aerobot_systems::environment::viscosity::Gas;
 use aerobot_systems::environment::wind_profile::WindProfile;
 
 /// The tables of a scene, read.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Tables {
     /// The table of the atmosphere, if it is one.
     pub atmosphere: Option<AtmosphereTable>,

@@ -16,3 +16,4 @@ pub mod segments;
 pub mod state_space;
 pub mod state_vector;
 pub mod tree_components;
+pub mod winch;

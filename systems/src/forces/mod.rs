@@ -5,6 +5,7 @@
 pub mod body_drag;
 pub mod buoyancy;
 pub mod line_twist;
+pub mod reeled_spring;
 pub mod segment_drag;
 pub mod spring;
 pub mod torsion;

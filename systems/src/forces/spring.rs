@@ -6,19 +6,23 @@
 
 use aerobot_components::derivatives::SegmentDerivatives;
 use aerobot_components::segment::{KelvinVoigt, RigidLink, SegmentGeometry, SegmentLoad, Tension};
+use aerobot_components::winch::Reeled;
 use bevy_ecs::change_detection::DetectChangesMut;
-use bevy_ecs::query::With;
+use bevy_ecs::query::{With, Without};
 use bevy_ecs::system::Query;
 use glam::DMat3;
 
-/// Finds the tension of every segment and passes it to its ends.
+/// Finds the tension of every segment of constant length and passes it to its ends.
 pub fn spring(
-    mut segments: Query<(
-        &KelvinVoigt,
-        &SegmentGeometry,
-        &mut Tension,
-        &mut SegmentLoad,
-    )>,
+    mut segments: Query<
+        (
+            &KelvinVoigt,
+            &SegmentGeometry,
+            &mut Tension,
+            &mut SegmentLoad,
+        ),
+        Without<Reeled>,
+    >,
 ) {
     for (spring, geometry, mut tension, mut load) in &mut segments {
         let value = axial_force_n(spring, geometry.length_m, geometry.length_rate_m_s);

@@ -52,6 +52,11 @@ pub fn energy(
     }
 }
 
+/// Mechanical energy of the whole system at the state that was evaluated last, J.
+pub fn mechanical_energy_j(sum: EnergySum) -> f64 {
+    sum.kinetic_j(AddedMass::Outside) + sum.potential_j()
+}
+
 /// Finds the power of non-conservative forces, when all forces and accelerations are known.
 pub fn nonconservative_power(
     sum: EnergySum,
@@ -65,5 +70,5 @@ pub fn nonconservative_power(
         power += spring.stiffness_n_m * spring.stretch_m * spring.rate_m_s;
     }
     power += sum.torsion_potential_rate_w();
-    work.rate_per_s = power;
+    work.rate_per_s = power + sum.reels_w().0;
 }

@@ -19,7 +19,8 @@ pub fn mechanical_energy(
     for (tension, geometry) in &tensions {
         power_w += tension.0 * geometry.length_rate_m_s;
     }
-    power_w += sum.torsion_power_w();
+    let (by_change_w, by_damper_w) = sum.reels_w();
+    power_w += sum.torsion_power_w() + by_change_w + by_damper_w;
     MechanicalEnergy {
         energy_j: kinetic_j + sum.potential_j(),
         kinetic_j,

@@ -16,6 +16,7 @@ use aerobot_components::torsion::{Torsion, Twist};
 use bevy_ecs::query::{QueryData, With, Without};
 use bevy_ecs::system::{Query, Res, SystemParam};
 
+use super::winch::ReelPower;
 use crate::dynamics::link_mechanism::LinkMechanism;
 use crate::environment::EnvironmentModel;
 
@@ -74,6 +75,7 @@ pub struct EnergySum<'w, 's> {
     anchors: Query<'w, 's, (), With<Anchor>>,
     segments: Query<'w, 's, (&'static KelvinVoigt, &'static SegmentGeometry), Without<RigidLink>>,
     torsions: Query<'w, 's, (&'static Torsion, &'static Twist)>,
+    reels: Query<'w, 's, &'static ReelPower>,
     links: Option<Res<'w, LinkMechanism>>,
 }
 
@@ -181,6 +183,15 @@ impl EnergySum<'_, '_> {
         taken
             .map(|(_, twist)| twist.torque_n_m * twist.rate_rad_s)
             .sum()
+    }
+
+    /// What winches do: by the change of lengths and masses, and through dampers, W.
+    #[must_use]
+    pub fn reels_w(&self) -> (f64, f64) {
+        let add = |sum: (f64, f64), power: &ReelPower| {
+            (sum.0 + power.by_change_w, sum.1 + power.by_damper_w)
+        };
+        self.reels.iter().fold((0.0, 0.0), add)
     }
 
     /// The masses of tethers that are carried by what is free to move.

@@ -9,3 +9,4 @@ pub mod energy_guard;
 pub mod energy_sum;
 pub mod swing;
 pub mod twist;
+pub mod winch;

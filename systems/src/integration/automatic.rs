@@ -136,4 +136,9 @@ impl Integrator for Automatic {
             }
         }
     }
+
+    fn resize(&mut self, scales: &[f64]) {
+        self.implicit.resize(scales);
+        self.explicit.resize(scales);
+    }
 }

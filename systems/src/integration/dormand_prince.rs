@@ -173,6 +173,13 @@ impl Integrator for DormandPrince {
         trajectory.accept(equations);
         Ok(())
     }
+
+    fn resize(&mut self, scales: &[f64]) {
+        self.scales = scales.to_vec();
+        for part in self.k.iter_mut().chain([&mut self.stage, &mut self.trial]) {
+            part.resize(scales.len(), 0.0);
+        }
+    }
 }
 
 #[cfg(test)]

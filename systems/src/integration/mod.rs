@@ -158,6 +158,10 @@ pub trait Integrator: Send {
         trajectory: &mut Trajectory,
         limit_s: f64,
     ) -> Result<(), StepFailure>;
+
+    /// Goes on with a state of other parts, of which these are the scales of errors; what is known of step
+    /// sizes is kept.
+    fn resize(&mut self, scales: &[f64]);
 }
 
 /// Why a step could not be taken.

@@ -282,6 +282,19 @@ impl Integrator for Rosenbrock {
             }
         }
     }
+
+    fn resize(&mut self, scales: &[f64]) {
+        let scratch = [
+            &mut self.stage,
+            &mut self.error,
+            &mut self.increment,
+            &mut self.trial,
+            &mut self.rates,
+        ];
+        for part in self.u.iter_mut().chain(scratch) {
+            part.resize(scales.len(), 0.0);
+        }
+    }
 }
 
 /// `start + sum_j factors_j u_j`, element by element, into `out`.

@@ -83,4 +83,8 @@ impl Integrator for RungeKutta4 {
         trajectory.accept(equations);
         Ok(())
     }
+
+    fn resize(&mut self, _: &[f64]) {
+        // Every step asks for the length of the state.
+    }
 }

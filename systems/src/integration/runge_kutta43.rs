@@ -106,4 +106,10 @@ impl Integrator for RungeKutta43 {
         trajectory.accept(equations);
         Ok(())
     }
+
+    fn resize(&mut self, scales: &[f64]) {
+        for part in self.k.iter_mut().chain([&mut self.stage, &mut self.trial]) {
+            part.resize(scales.len(), 0.0);
+        }
+    }
 }

@@ -96,6 +96,17 @@ impl Default for LinearEnd {
     }
 }
 
+/// A segment at a winch, whose unstretched length is a first-order state.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LinearReel {
+    /// Index of its first point.
+    pub segment: usize,
+    /// Place among the first-order states.
+    pub state: usize,
+    /// Change of its tension with that length, N/m.
+    pub tension_by_length_n_m: f64,
+}
+
 /// Masses and derivatives at one state.
 #[derive(Clone, Debug, Default)]
 pub struct Derivatives {
@@ -107,6 +118,8 @@ pub struct Derivatives {
     pub bodies: Vec<LinearBody>,
     /// `from` and `to` of every line.
     pub ends: Vec<[LinearEnd; 2]>,
+    /// Segments at winches.
+    pub reels: Vec<LinearReel>,
     /// Largest acceleration of gravity, m/s^2.
     pub gravity_m_s2: f64,
 }
@@ -125,6 +138,7 @@ impl Derivatives {
             points: vec![LinearPoint::default(); topology.points],
             bodies: vec![body; topology.bodies.len()],
             ends: vec![[LinearEnd::default(); 2]; topology.lines.len()],
+            reels: Vec::new(),
             gravity_m_s2: 0.0,
         }
     }

@@ -248,6 +248,31 @@ impl ShiftedSystem {
         push(&mut self.pushes, line.to, &to.place, -pull);
     }
 
+    /// `g^2 dT/dL0 r_s` of segments whose unstretched length L0 is a first-order state: what the motion
+    /// does not change is known beforehand.
+    fn pull_reels(&mut self, derivatives: &Derivatives, r_s: &[f64]) {
+        for reel in &derivatives.reels {
+            let lines = self.topology.lines.iter();
+            let Some((line, ends)) = lines
+                .zip(&derivatives.ends)
+                .find(|(line, _)| line.segments().contains(&reel.segment))
+            else {
+                continue;
+            };
+            let by_length = self.g * self.g * reel.tension_by_length_n_m * r_s[reel.state];
+            let pull = by_length * derivatives.segments[reel.segment].direction;
+            for (point, pull) in [(reel.segment, pull), (reel.segment + 1, -pull)] {
+                if point == line.first_point {
+                    push(&mut self.pushes, line.from, &ends[0].place, pull);
+                } else if point == line.last_point() {
+                    push(&mut self.pushes, line.to, &ends[1].place, pull);
+                } else {
+                    self.loads[point] += pull;
+                }
+            }
+        }
+    }
+
     /// From the loads of nodes and bodies to their motions.
     fn solve_all(&mut self, derivatives: &Derivatives) {
         if let (true, Some(pair), [line]) = (self.is_pair, &self.pair, &self.topology.lines[..]) {
@@ -383,6 +408,7 @@ impl StageSolver for ShiftedSystem {
         for index in 0..self.topology.lines.len() {
             self.pull_line(index, derivatives, r_x, r_v);
         }
+        self.pull_reels(derivatives, r_s);
         self.solve_all(derivatives);
         for index in 0..self.topology.lines.len() {
             self.take_line(index, r_x, r_v);

@@ -1,0 +1,142 @@
+//! Winches: what pays tethers out and reels them in.
+
+use aerobot_components::run::Formulation;
+use aerobot_components::scene_component::FieldReport;
+use aerobot_components::state::{Acceleration, FirstOrderState, Force, Mass, Position, Velocity};
+use aerobot_components::tether::{Attachment, Lumping, Tether, TetherParts, TetherSide};
+use aerobot_components::winch::{Reeled, ReeledLine, Winch};
+use aerobot_systems::dynamics::rigid_body::CarriedMass;
+use aerobot_systems::dynamics::winch::{CarriesReeledLine, carry, pay_out, take_up};
+use aerobot_systems::forces::reeled_spring::{reeled_spring, reeled_spring_derivatives};
+use aerobot_systems::instruments::winch::{ReelPower, WinchWork, winch_power};
+use bevy_ecs::schedule::IntoScheduleConfigs;
+use bevy_ecs::world::World;
+
+use crate::plugin::{Plugin, Simulator};
+use crate::scene::{Scene, SetupError};
+use crate::schedule::Phase;
+use crate::topology_change::reeling::SHORTEST_PART;
+use crate::world::{SceneEntities, next_spawn_order};
+
+/// Winches, in the formulation of lumped masses.
+pub struct WinchesPlugin;
+
+impl Plugin for WinchesPlugin {
+    fn build(&self, simulator: &mut Simulator) {
+        simulator
+            .register_component::<Winch>()
+            .add_check(check)
+            .add_setup(set_up)
+            .add_systems_for::<Winch, _, _>(Phase::Prepare, || (pay_out, carry).chain())
+            .add_systems_for::<Winch, _, _>(Phase::Forces, || (reeled_spring, take_up).chain())
+            .add_systems_for::<Winch, _, _>(Phase::Dynamics, || winch_power)
+            .add_systems_for::<Winch, _, _>(Phase::Derivatives, || reeled_spring_derivatives);
+    }
+}
+
+fn check(scene: &Scene, report: &mut FieldReport) {
+    for (entity, _) in scene.with::<Winch>() {
+        let path = entity.path::<Winch>();
+        if scene.run.formulation == Formulation::Denoc {
+            report.add(
+                &path,
+                "in `Denoc` tethers keep their length, and there is no winch",
+                "use `LumpedMass` (`--formulation lumped-mass`), or leave the `Winch` out",
+            );
+        }
+        let is_interior = |tether: &Tether| tether.lumping == Lumping::Interior;
+        if entity.get::<Tether>().is_some_and(is_interior) {
+            report.add(
+                &path,
+                "a winch needs the lumping `HalfSegment`: line that leaves it has mass at both ends",
+                "leave `lumping` out",
+            );
+        }
+    }
+}
+
+fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
+    for (entity, winch) in scene.with::<Winch>() {
+        let Some(id) = world.resource::<SceneEntities>().get(&entity.name) else {
+            continue;
+        };
+        let (Some(tether), Some(parts)) = (
+            entity.get::<Tether>(),
+            world.get::<TetherParts>(id).cloned(),
+        ) else {
+            continue;
+        };
+        mount(world, (id, tether), &parts, winch);
+    }
+    Ok(())
+}
+
+/// Puts a winch at its end of a tether.
+fn mount(
+    world: &mut World,
+    (id, tether): (bevy_ecs::entity::Entity, &Tether),
+    parts: &TetherParts,
+    winch: &Winch,
+) {
+    let (points, segments) = (&parts.points, &parts.segments);
+    let last = points.len() - 1;
+    let (near, far, segment) = match winch.end {
+        TetherSide::From => (points[0], points[1], segments[0]),
+        TetherSide::To => (points[last], points[last - 1], segments[last - 1]),
+    };
+    let Some(attachment) = world.get::<Attachment>(near).copied() else {
+        return;
+    };
+    let nominal_m = tether.segment_length_m();
+    let line_kg_m = tether.mass_kg() / tether.length_m;
+    let drum_kg = line_kg_m * winch.stored_m;
+    for point in [points[0], points[last]] {
+        if let Some(end) = world.get::<Attachment>(point).copied() {
+            world.entity_mut(end.carrier).insert(CarriesReeledLine);
+        }
+    }
+    if let Some(mut carried) = world.get_mut::<CarriedMass>(attachment.carrier) {
+        carried.add(drum_kg, attachment.offset_m);
+    }
+    let drum = world
+        .spawn((
+            attachment,
+            Mass(drum_kg),
+            Position::default(),
+            Velocity::default(),
+            Force::default(),
+            Acceleration::default(),
+        ))
+        .id();
+    let far_kg = world.get::<Mass>(far).map_or(0.0, |mass| mass.0);
+    world.entity_mut(segment).insert(Reeled {
+        shortest_part: SHORTEST_PART,
+        ..Reeled::default()
+    });
+    let steady = |value| FirstOrderState {
+        value,
+        rate_per_s: 0.0,
+        // The length is known beforehand, and the work follows from the motion.
+        error_scale: f64::INFINITY,
+    };
+    let line = ReeledLine {
+        tether: id,
+        segment,
+        near,
+        far,
+        drum,
+        stiffness_n: tether.axial_stiffness_n,
+        damping_n_s: tether.damping_n_s_m * tether.length_m,
+        line_kg_m,
+        far_mass_kg: far_kg - 0.5 * line_kg_m * nominal_m,
+        near_and_stored_m: nominal_m + winch.stored_m,
+        nominal_m,
+        rate_m_s: 0.0,
+    };
+    let order = next_spawn_order(world);
+    let line = world
+        .spawn((order, line, ReelPower::default(), steady(nominal_m)))
+        .id();
+    let order = next_spawn_order(world);
+    world.spawn((order, WinchWork(line), steady(0.0)));
+}
