@@ -21,6 +21,7 @@ mod steady;
 mod tethered_system;
 
 pub(crate) use steady::{SteadySystem, settle};
+pub(crate) use tethered_system::{TetheredSystem, find as tethered_systems};
 
 use aerobot_components::body::{Anchor, Pose};
 use aerobot_components::state::{

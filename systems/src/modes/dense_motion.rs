@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 use super::shift_invert::ShiftInvert;
+use super::sparse_motion::SparseMotion;
 
 /// The matrices of the head of [`super`].
 #[derive(Clone, Debug)]
@@ -41,6 +42,48 @@ impl DenseMotion {
             shift: 0.0,
             factors: None,
         }
+    }
+
+    /// The same as a motion in blocks, with so many first-order states that do nothing yet.
+    #[must_use]
+    pub fn of(sparse: &SparseMotion, first_order: usize) -> Self {
+        let pattern = sparse.mass.pattern();
+        let mut motion = Self::zeros(pattern.dimension(), first_order);
+        let matrices = [
+            (&sparse.mass, &mut motion.mass),
+            (&sparse.damping, &mut motion.damping),
+            (&sparse.stiffness, &mut motion.stiffness),
+        ];
+        for (from, to) in matrices {
+            for i in 0..pattern.sites() {
+                for &j in pattern.row(i) {
+                    let (row, column) = (pattern.offset(i), pattern.offset(j));
+                    let columns = pattern.dim(j);
+                    for (place, value) in from.block(i, j).iter().enumerate() {
+                        to[(row + place / columns, column + place % columns)] = *value;
+                    }
+                }
+            }
+        }
+        motion
+    }
+
+    /// Without the first-order states that nothing depends on, such as a sum of work; and the places of
+    /// those that are left.
+    #[must_use]
+    pub fn without_idle_first_order(mut self) -> (Self, Vec<usize>) {
+        let mut left: Vec<usize> = (0..self.first_order()).collect();
+        while let Some(idle) = (0..left.len()).find(|k| {
+            let driven = self.by_first_order.column(*k).amax();
+            driven == 0.0 && self.first_order.column(*k).amax() == 0.0
+        }) {
+            left.remove(idle);
+            self.by_first_order = self.by_first_order.remove_column(idle);
+            self.first_order = self.first_order.remove_column(idle).remove_row(idle);
+            self.first_order_by_displacement = self.first_order_by_displacement.remove_row(idle);
+            self.first_order_by_velocity = self.first_order_by_velocity.remove_row(idle);
+        }
+        (self, left)
     }
 }
 

@@ -20,5 +20,8 @@ pub mod sparse_motion;
 
 pub use nalgebra::Complex;
 
+/// A real matrix.
+pub type Matrix = nalgebra::DMatrix<f64>;
+
 #[cfg(test)]
 mod tests;

@@ -34,27 +34,6 @@ fn string(n: usize, along: f64, damping: f64) -> SparseMotion {
     motion
 }
 
-fn dense(sparse: &SparseMotion) -> DenseMotion {
-    let pattern = sparse.mass.pattern();
-    let mut motion = DenseMotion::zeros(pattern.dimension(), 0);
-    let matrices = [
-        (&sparse.mass, &mut motion.mass),
-        (&sparse.damping, &mut motion.damping),
-        (&sparse.stiffness, &mut motion.stiffness),
-    ];
-    for (from, to) in matrices {
-        for i in 0..pattern.sites() {
-            for &j in pattern.row(i) {
-                for (place, value) in from.block(i, j).iter().enumerate() {
-                    let (row, column) = (place / pattern.dim(j), place % pattern.dim(j));
-                    to[(pattern.offset(i) + row, pattern.offset(j) + column)] = *value;
-                }
-            }
-        }
-    }
-    motion
-}
-
 /// omega_k = 2 sin(k pi / (2 (n + 1))) across, each twice (Goldstein, Poole and Safko 2002, sec. 12.1), and
 /// a damping ratio of damping omega / 2.
 fn assert_is_string(modes: &[Eigenmode], n: usize, damping: f64) {
@@ -72,7 +51,7 @@ fn assert_is_string(modes: &[Eigenmode], n: usize, damping: f64) {
 fn both_solvers_find_the_string_of_beads_with_springs_a_million_times_stiffer_along() {
     let (n, damping) = (12, 1e-3);
     let mut sparse = string(n, 1e6, damping);
-    let mut full = dense(&sparse);
+    let mut full = DenseMotion::of(&sparse, 0);
     for method in [Method::Complete, Method::Slowest] {
         let modes = slowest(&mut sparse, 10, 0.1, method);
         assert_is_string(&modes.unwrap(), n, damping);
