@@ -86,8 +86,8 @@ fn balloons_heave_in_exponential_air() {
         assert_eq!(mode.name, format!("bounce of `{name}`"));
     }
     assert_eq!(found.modes.len(), 2);
-    // Each may be anywhere along x and y, and at any heading.
-    assert_eq!(found.neutral.len(), 6, "{:?}", found.neutral);
+    // Each may be anywhere along x and y, and turned in any way.
+    assert_eq!(found.neutral.len(), 10, "{:?}", found.neutral);
 }
 
 /// omega^2 = g / L of the pendulum, EA / (L m) of the bounce with zeta = c / (2 sqrt(k m)).
@@ -163,7 +163,7 @@ fn a_body_on_a_line_is_a_double_pendulum() {
             assert_eq!(planar.len(), 2);
             for (mode, expected) in planar.iter().zip(expected) {
                 let square = mode.angular_frequency_rad_s.powi(2);
-                assert_relative(&formulation, square, expected, 1e-8);
+                assert_relative(&formulation, square, expected, 1e-7);
             }
         }
         assert_eq!(found.neutral, ["the heading of `rod`"]);
@@ -204,12 +204,13 @@ fn a_body_on_three_lines_yaws_as_a_trifilar_pendulum() {
         })
         .collect();
     let ring = "\"ring\": (Body: (mass_kg: 20, inertia: HollowCylinder(outer_radius_m: 2.1, \
-                inner_radius_m: 1.3, height_m: 0.2))),";
+                inner_radius_m: 1.3, height_m: 0.2)), Pose: (position_m: (0, 0, 55_990))),";
     let found = modes_of_text(&hung(&format!("{ring}{lines}")), &[]);
     let yaw = mode_of(&found, "ring", Motion::Yaw);
     let length_m = 10.0 * (1.0 + mass_kg * G / 3.0 / 1e7);
     let expected = (mass_kg * G * radius_m * radius_m / (length_m * moment)).sqrt();
-    assert_relative("yaw", yaw.angular_frequency_rad_s, expected, 1e-8);
+    // Tensions have the round-off of altitudes times stiffness.
+    assert_relative("yaw", yaw.angular_frequency_rad_s, expected, 1e-6);
     assert_eq!(yaw.name, "yaw of `ring`");
     assert!(found.neutral.is_empty(), "{:?}", found.neutral);
 }

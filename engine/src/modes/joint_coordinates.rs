@@ -23,7 +23,7 @@ use super::sites::{ComplexVector, SiteMotion, Sites};
 use crate::evaluation::Evaluation;
 
 /// Largest step of displacements, m and rad, as a part of a link's length for a link.
-const STEP: f64 = 0.031_25;
+const STEP: f64 = 0.007_812_5;
 /// Largest step of velocities, m/s and rad/s.
 const VELOCITY_STEP: f64 = 1.0 / 4096.0;
 

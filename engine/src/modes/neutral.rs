@@ -65,18 +65,21 @@ pub(super) fn candidates(
             }
         }
         for body in bodies.iter().filter(|body| body.turns) {
-            let turns = |site: &Site| site.entity == body.entity;
-            candidates.push(Candidate {
-                words: format!("the heading of `{}`", name(body)),
-                motions: all(sites, |site| {
-                    let rate = if turns(site) {
-                        heading(site)
-                    } else {
-                        DVec3::ZERO
-                    };
-                    (DVec3::ZERO, rate)
-                }),
-            });
+            let attitude = body.attitude.conjugate();
+            for (word, axis) in [
+                ("heading", DVec3::Z),
+                ("roll", DVec3::X),
+                ("pitch", DVec3::Y),
+            ] {
+                let rate = |site: &Site| {
+                    let turns = site.entity == body.entity;
+                    if turns { attitude * axis } else { DVec3::ZERO }
+                };
+                candidates.push(Candidate {
+                    words: format!("the {word} of `{}`", name(body)),
+                    motions: all(sites, |site| (DVec3::ZERO, rate(site))),
+                });
+            }
         }
     }
     candidates

@@ -31,6 +31,10 @@ const FEW: usize = 150;
 const MOST: usize = 2400;
 /// Modes this much slower than a pendulum of all tethers in a row, which belong to what nothing restores.
 const STANDSTILL: f64 = 0.02;
+/// Modes this much slower are round-off.
+const NOTHING: f64 = 1e-6;
+/// Modes that are found besides, in place of such round-off.
+const SPARE: usize = 8;
 /// Relative difference of eigenvalues that count as equal.
 const EQUAL: f64 = 1e-6;
 
@@ -240,14 +244,14 @@ fn solve(
 ) -> Result<Vec<Eigenmode>, SetupError> {
     let slow_per_s = slow_per_s(world);
     let motion = motion.as_shift_invert();
-    let all = slowest(motion, count + still, slow_per_s, method);
+    let all = slowest(motion, count + still + SPARE, slow_per_s, method);
     let all = all.map_err(|error| SetupError::new("entities", error.to_string(), ""))?;
     let mut left = still;
     let mut modes = Vec::with_capacity(count);
     for mode in all {
         let zeros = if mode.eigenvalue.im > 0.0 { 2 } else { 1 };
-        let is_still = mode.eigenvalue.norm_sqr().sqrt() < STANDSTILL * slow_per_s;
-        if is_still && left > 0 {
+        let part = mode.eigenvalue.norm_sqr().sqrt() / slow_per_s;
+        if part < NOTHING || part < STANDSTILL && left > 0 {
             left = left.saturating_sub(zeros);
         } else {
             modes.push(mode);

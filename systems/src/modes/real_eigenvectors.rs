@@ -7,6 +7,9 @@ use nalgebra::{Complex, DMatrix, Schur};
 /// Sweeps of the QR algorithm for each eigenvalue at most; two or three are usual.
 const SWEEPS: usize = 100;
 
+/// Elements this many round-offs beside their neighbours count as zero: the least that converges.
+const ROUND_OFFS: [f64; 4] = [1.0, 16.0, 256.0, 4096.0];
+
 /// An eigenvalue and its vector.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Eigenpair {
@@ -24,7 +27,10 @@ pub fn eigenpairs(matrix: DMatrix<f64>) -> Option<Vec<Eigenpair>> {
     if n == 0 {
         return Some(Vec::new());
     }
-    let schur = Schur::try_new(matrix, f64::EPSILON, SWEEPS * n.max(10))?;
+    let schur = ROUND_OFFS.iter().find_map(|part| {
+        let smallest = part * f64::EPSILON;
+        Schur::try_new(matrix.clone(), smallest, SWEEPS * n.max(10))
+    })?;
     let (q, t) = schur.unpack();
     let smallest = f64::EPSILON * t.amax().max(f64::MIN_POSITIVE);
     let mut pairs = Vec::with_capacity(n);
