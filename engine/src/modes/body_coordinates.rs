@@ -102,8 +102,8 @@ fn in_full(
                 ),
                 Part::Velocity => (&mut motion.damping, &mut motion.first_order_by_velocity),
             };
-            for row in 0..n {
-                matrix[(row, k)] -= column[row];
+            for (row, value) in column[..n].iter().enumerate() {
+                matrix[(row, k)] -= value;
             }
             for row in 0..m {
                 driven[(row, k)] = column[n + row];
