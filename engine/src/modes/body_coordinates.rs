@@ -117,8 +117,8 @@ fn in_full(
             forces.evaluate(&at, out)
         })?;
         at.w[k] = 0.0;
-        for row in 0..n {
-            motion.by_first_order[(row, k)] = column[row];
+        for (row, value) in column[..n].iter().enumerate() {
+            motion.by_first_order[(row, k)] = *value;
         }
         for row in 0..m {
             motion.first_order[(row, k)] = column[n + row];

@@ -174,8 +174,8 @@ impl JointWorld<'_> {
                 state[2 * coordinates + k] += h;
                 self.accelerations(basis, &state, out)
             })?;
-            for row in 0..n {
-                motion.by_first_order[(row, k)] = column[row];
+            for (row, value) in column[..n].iter().enumerate() {
+                motion.by_first_order[(row, k)] = *value;
             }
             for row in 0..m {
                 motion.first_order[(row, k)] = column[n + row];
