@@ -13,6 +13,7 @@ mod linearisation;
 mod link_stable_step;
 mod link_start;
 mod link_tree;
+pub mod modes;
 pub mod placement;
 pub mod plugin;
 pub mod recording;

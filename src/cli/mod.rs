@@ -5,6 +5,7 @@
 mod check;
 mod compare;
 mod comparison_text;
+mod modes;
 mod progress;
 mod reproduce;
 mod run;
@@ -42,6 +43,8 @@ enum Command {
     Reproduce(ReproduceArguments),
     /// Find the steady state of a scene in its wind, and write a scene that starts there.
     Trim(TrimArguments),
+    /// Find the modes of small motions about the steady state: frequencies, damping, and who moves how.
+    Modes(ModesArguments),
 }
 
 /// What every command that reads a scene takes.
@@ -161,6 +164,26 @@ struct TrimArguments {
     quiet: bool,
 }
 
+#[derive(Args)]
+struct ModesArguments {
+    /// The scene, a RON file.
+    scene: PathBuf,
+    #[command(flatten)]
+    overrides: SceneArguments,
+    /// Number of modes, the slowest first.
+    #[arg(long, value_name = "K", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    count: u32,
+    /// CSV file for all numbers.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Overwrite a file that exists.
+    #[arg(long)]
+    force: bool,
+    /// Print nothing but errors and warnings.
+    #[arg(long)]
+    quiet: bool,
+}
+
 impl SceneArguments {
     /// All overrides as `PATH=RON`, those of `--set` first.
     fn as_overrides(&self) -> Vec<String> {
@@ -210,5 +233,6 @@ pub fn main(plugins: &[&dyn Plugin]) -> ExitCode {
         Command::Compare(arguments) => compare::compare(&simulator, &arguments),
         Command::Reproduce(arguments) => reproduce::reproduce(&simulator, &arguments),
         Command::Trim(arguments) => trim::trim(&simulator, &arguments),
+        Command::Modes(arguments) => modes::modes(&simulator, &arguments),
     }
 }

@@ -10,5 +10,6 @@ pub mod forces;
 pub mod instruments;
 pub mod integration;
 pub mod linearised_motion;
+pub mod modes;
 pub mod nonlinear_solver;
 pub mod towed_cable;

@@ -22,6 +22,7 @@ mod tethered_system;
 mod twists;
 
 pub(crate) use steady::{SteadySystem, settle};
+pub(crate) use tethered_system::{TetheredSystem, find as tethered_systems};
 pub(crate) use twists::accept_twists;
 
 use aerobot_components::body::{Anchor, Pose};

@@ -40,7 +40,7 @@ impl TetheredSystem {
 }
 
 /// All systems of a scene, in the order of their first entities.
-pub(super) fn find(world: &World, scene: &Scene) -> Vec<TetheredSystem> {
+pub(crate) fn find(world: &World, scene: &Scene) -> Vec<TetheredSystem> {
     let names = world.resource::<SceneEntities>();
     let mut seen: Vec<&str> = Vec::new();
     let mut systems = Vec::new();

@@ -152,6 +152,11 @@ impl BlockMatrix {
         &self.values
     }
 
+    /// All stored values to change, block after block.
+    pub fn values_mut(&mut self) -> &mut [f64] {
+        &mut self.values
+    }
+
     /// Sets all values to zero.
     pub fn clear(&mut self) {
         self.values.fill(0.0);
