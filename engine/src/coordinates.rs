@@ -1,7 +1,7 @@
 //! What a formulation counts motion in, from the components of a world as they are: when a simulation is
 //! built, and again whenever its topology has changed.
 
-use aerobot_systems::denoc::stage_system::LinkStages;
+use aerobot_systems::denoc::stage_system::{Extras, LinkStages};
 use aerobot_systems::dynamics::joint_vector::JointVector;
 use aerobot_systems::dynamics::state_space::{Layout, StateSpace};
 use aerobot_systems::dynamics::state_vector::StateVector;
@@ -33,10 +33,19 @@ impl Coordinates {
         if has_links(scene, scene.run.formulation) {
             let found = topology::find(world, layout)?;
             let mechanism = link_tree::build(world, scene, &found);
-            let (tree, tips_kg) = (mechanism.tree.clone(), mechanism.entities.tips_kg.clone());
+            let tree = mechanism.tree.clone();
+            let extras = Extras {
+                loose: mechanism
+                    .entities
+                    .loose
+                    .iter()
+                    .map(|loose| loose.point)
+                    .collect(),
+                tips_kg: mechanism.entities.tips_kg.clone(),
+            };
             world.insert_resource(mechanism);
             let state = JointVector::new(world, layout.first_order);
-            let solver = LinkStages::new(tree, found.topology.clone(), state.places(), tips_kg);
+            let solver = LinkStages::new(tree, found.topology.clone(), state.places(), extras);
             return Ok(Self {
                 state: Box::new(state),
                 linearised: (found.topology, Box::new(solver)),

@@ -2,13 +2,16 @@
 
 use aerobot_components::body::Anchor;
 use aerobot_components::run::LinkMass;
+use aerobot_components::segment::Severed;
 use aerobot_components::state::{Inertia, Mass};
 use aerobot_components::tether::{Attachment, Tether, TetherParts};
 use aerobot_systems::denoc::articulated_link::Stretch;
 use aerobot_systems::denoc::kinematics::LimbOffsets;
-use aerobot_systems::denoc::tree::{KinematicTree, LinkKind};
-use aerobot_systems::dynamics::link_mechanism::{LinkMechanism, TreeEntities};
+use aerobot_systems::denoc::tree::{KinematicTree, LinkKind, Piece};
+use aerobot_systems::dynamics::link_mechanism::{LinkMechanism, LooseNode, TreeEntities};
 use aerobot_systems::dynamics::rigid_body::CarriedMass;
+use aerobot_systems::linearised_motion::topology::End;
+use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
 
 use crate::builtin::tethers::lumping;
@@ -32,8 +35,19 @@ pub(crate) fn build(world: &World, scene: &Scene, found: &WorldTopology) -> Link
         .iter()
         .filter_map(|tether| Some(link_kind(scene, world.get::<Tether>(*tether)?)))
         .collect();
-    let tree = KinematicTree::new(&found.topology, &kinds, &bases(world, scene, found));
-    let mut entities = entities(world, found, &tree);
+    let (pieces, loose) = pieces(world, found);
+    let mut turns = turns(world, found);
+    turns.resize(turns.len() + loose.len(), false);
+    let tree = KinematicTree::of_pieces(&pieces, &turns, &kinds, &bases(world, scene, found));
+    turns.resize(tree.carried_by.len(), false);
+    let mut entities = TreeEntities {
+        bodies: found.bodies.clone(),
+        points: found.topology.points,
+        loose,
+        turns,
+        ..TreeEntities::default()
+    };
+    find_ends(world, found, &tree, &mut entities);
     lend_to_tips(world, &tree, &mut entities);
     LinkMechanism::new(tree, entities)
 }
@@ -73,7 +87,7 @@ fn bases(world: &World, scene: &Scene, found: &WorldTopology) -> Vec<usize> {
     let mut by_tethers: Vec<usize> = (0..found.bodies.len()).collect();
     let tethers = |body: &usize| {
         let lines = found.topology.lines.iter();
-        let end = aerobot_systems::linearised_motion::topology::End::OnBody(*body);
+        let end = End::OnBody(*body);
         lines
             .filter(|line| line.from == end || line.to == end)
             .count()
@@ -83,20 +97,77 @@ fn bases(world: &World, scene: &Scene, found: &WorldTopology) -> Vec<usize> {
     bases
 }
 
-fn entities(world: &World, found: &WorldTopology, tree: &KinematicTree) -> TreeEntities {
-    let turns = |body: usize| {
-        let body = found.bodies.get(body);
-        body.is_some_and(|body| world.get::<Inertia>(*body).is_some())
-    };
-    let mut entities = TreeEntities {
-        turns: (0..tree.carried_by.len()).map(turns).collect(),
-        bodies: found.bodies.clone(),
-        points: found.topology.points,
-        ..TreeEntities::default()
-    };
+/// Which bodies turn.
+fn turns(world: &World, found: &WorldTopology) -> Vec<bool> {
+    let bodies = found.bodies.iter();
+    bodies
+        .map(|body| world.get::<Inertia>(*body).is_some())
+        .collect()
+}
+
+/// What is left of the tethers between their severed segments, and the nodes that are loose there.
+fn pieces(world: &World, found: &WorldTopology) -> (Vec<Piece>, Vec<LooseNode>) {
+    let (mut pieces, mut loose) = (Vec::new(), Vec::new());
+    let bodies = found.bodies.len();
+    for (index, (line, tether)) in found.topology.lines.iter().zip(&found.tethers).enumerate() {
+        let Some(parts) = world.get::<TetherParts>(*tether) else {
+            continue;
+        };
+        let is_severed = |segment: &Entity| world.get::<Severed>(*segment).is_some();
+        let mut cuts: Vec<usize> = (0..parts.segments.len())
+            .filter(|k| is_severed(&parts.segments[*k]))
+            .collect();
+        cuts.push(parts.segments.len());
+        // Points `first..=last` of the tether hang together.
+        let mut first = 0;
+        for last in cuts {
+            let mut end_at = |k: usize, end: End| {
+                if k == 0 || k == parts.points.len() - 1 {
+                    return end;
+                }
+                let known = loose
+                    .iter()
+                    .position(|node: &LooseNode| node.node == parts.points[k]);
+                let place = known.unwrap_or_else(|| {
+                    loose.push(LooseNode {
+                        node: parts.points[k],
+                        point: line.first_point + k,
+                        mass_kg: world
+                            .get::<Mass>(parts.points[k])
+                            .map_or(0.0, |mass| mass.0),
+                    });
+                    loose.len() - 1
+                });
+                End::OnBody(bodies + place)
+            };
+            let (from, to) = (end_at(first, line.from), end_at(last, line.to));
+            if last > first {
+                pieces.push(Piece {
+                    line: index,
+                    first_point: line.first_point + first,
+                    links: last - first,
+                    from,
+                    to,
+                });
+            }
+            first = last + 1;
+        }
+    }
+    (pieces, loose)
+}
+
+/// The entities and places at the ends of limbs, and of their links.
+fn find_ends(
+    world: &World,
+    found: &WorldTopology,
+    tree: &KinematicTree,
+    entities: &mut TreeEntities,
+) {
+    let bodies = found.bodies.len();
+    let ties = bodies + entities.loose.len();
     for limb in &tree.limbs {
         let tether = found.tethers[limb.line];
-        let is_cut = limb.child >= found.bodies.len();
+        let is_cut = limb.child >= ties;
         let (mut offsets, mut anchor) = (LimbOffsets::default(), None);
         if let Some(parts) = world.get::<TetherParts>(tether)
             && let (Some(first), Some(last)) = (parts.points.first(), parts.points.last())
@@ -105,11 +176,10 @@ fn entities(world: &World, found: &WorldTopology, tree: &KinematicTree) -> TreeE
                 world.get::<Attachment>(*last),
             )
         {
-            if limb.is_from_outward {
-                entities.segments.extend(&parts.segments);
-            } else {
-                entities.segments.extend(parts.segments.iter().rev());
-            }
+            let line = &found.topology.lines[limb.line];
+            let links = 0..limb.links.len();
+            let segments = links.map(|k| parts.segments[limb.segment(k) - line.first_point]);
+            entities.segments.extend(segments);
             let (proximal, distal) = if limb.is_from_outward {
                 (from, to)
             } else {
@@ -119,12 +189,14 @@ fn entities(world: &World, found: &WorldTopology, tree: &KinematicTree) -> TreeE
                 let is_anchor = world.get::<Anchor>(end.carrier).is_some();
                 is_anchor.then_some(end.carrier)
             };
-            offsets.proximal_m = proximal.offset_m;
-            anchor = anchor_of(proximal);
+            if limb.parent.is_none_or(|parent| parent < bodies) {
+                offsets.proximal_m = proximal.offset_m;
+                anchor = anchor_of(proximal);
+            }
             if is_cut {
                 entities.offsets.ties_m.push(distal.offset_m);
                 entities.ties.push(anchor_of(distal));
-            } else {
+            } else if limb.child < bodies {
                 offsets.distal_m = distal.offset_m;
             }
         }
@@ -135,7 +207,6 @@ fn entities(world: &World, found: &WorldTopology, tree: &KinematicTree) -> TreeE
             .map_or(0.0, |tether| tether.length_m / tether.axial_stiffness_n);
         entities.compliance_m_n.push(compliance);
     }
-    entities
 }
 
 /// Takes the masses of tips from the bodies that they are tied to: so little that enough is left there.

@@ -146,12 +146,11 @@ fn check_condition(scene: &Scene, condition: &Condition, report: &mut FieldRepor
 }
 
 fn check_action(scene: &Scene, action: &Action, report: &mut FieldReport) {
-    let cuts = match action {
+    match action {
         Action::Cut { tether, segment } => {
             if let Some(found) = check_tether(scene, tether, report) {
                 check_segment(found, *segment, report);
             }
-            true
         }
         Action::Release { body } => {
             check_body(scene, "body", body, report);
@@ -160,7 +159,6 @@ fn check_action(scene: &Scene, action: &Action, report: &mut FieldReport) {
             if scene.entity(body).is_some_and(|entity| entity.complete) && !is_held {
                 report.add("body", format!("no tether holds `{body}`"), "");
             }
-            true
         }
         Action::Reel {
             tether,
@@ -171,16 +169,14 @@ fn check_action(scene: &Scene, action: &Action, report: &mut FieldReport) {
             if let Some(found) = check_tether(scene, tether, report) {
                 check_winch(scene, found, (*rate_m_s, *length_m), report);
             }
-            false
+            if scene.run.formulation == Formulation::Denoc {
+                report.add(
+                    "",
+                    "in `Denoc` tethers cannot be reeled during a run",
+                    "use `LumpedMass` (`--formulation lumped-mass`)",
+                );
+            }
         }
-    };
-    if scene.run.formulation == Formulation::Denoc {
-        let what = if cuts { "cut" } else { "reeled" };
-        report.add(
-            "",
-            format!("in `Denoc` tethers cannot be {what} during a run"),
-            "use `LumpedMass` (`--formulation lumped-mass`)",
-        );
     }
 }
 

@@ -66,6 +66,7 @@ fn flight(overrides: &[&str], at_s: f64) -> Vec<DVec3> {
 /// this altitude and grows on the way through the step control.
 #[test]
 fn restructuring_what_has_not_changed_changes_nothing() {
+    let mut worst = 0.0_f64;
     for formulation in ["LumpedMass", "Denoc"] {
         for integrator in [
             "Auto()",
@@ -83,7 +84,8 @@ fn restructuring_what_has_not_changed_changes_nothing() {
             let differences = without.iter().zip(&with).map(|(a, b)| a.distance(*b));
             let largest = differences.fold(0.0, f64::max);
             println!("{overrides:?}: {largest:.1e} m of {moved:.1} m");
-            assert!(largest < 2e-9, "{overrides:?}: {largest:.1e} m");
+            worst = worst.max(largest);
         }
     }
+    assert!(worst < 2e-9, "{worst:.1e} m");
 }

@@ -3,7 +3,9 @@
 //! the energy of its stretch is lost.
 
 use aerobot_components::derivatives::SegmentDerivatives;
-use aerobot_components::segment::{KelvinVoigt, SegmentDrag, SegmentLoad, Severed, Tension};
+use aerobot_components::segment::{
+    KelvinVoigt, RigidLink, SegmentDrag, SegmentLoad, Severed, Tension,
+};
 use aerobot_components::tether::{Attachment, TetherParts};
 use aerobot_components::winch::Reeled;
 use aerobot_systems::clock::Clock;
@@ -68,7 +70,7 @@ fn sever(world: &mut World, tether: Entity, number: u32, segment: Entity) {
     }
     world
         .entity_mut(segment)
-        .remove::<(KelvinVoigt, SegmentDrag, Reeled)>()
+        .remove::<(KelvinVoigt, SegmentDrag, Reeled, RigidLink)>()
         .insert((
             Severed,
             Tension(0.0),

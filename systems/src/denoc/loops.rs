@@ -36,7 +36,7 @@ use super::tree::KinematicTree;
 use crate::linearised_motion::body_block::{Place, Twist};
 
 /// eps, as a part of what makes it weigh as much as A.
-const BY_ENERGY: f64 = 1e-10;
+const BY_ENERGY: f64 = 1e-9;
 /// A pivot below this part of its diagonal is round-off.
 const DEPENDENT: f64 = 1e-14;
 const REFINEMENTS: usize = 3;

@@ -31,12 +31,21 @@ use crate::linearised_motion::topology::{Line, Topology};
 /// Where in the state the joint coordinates stand.
 #[derive(Clone, Debug, Default)]
 pub struct JointPlaces {
-    /// Of each body and tip: its displacement, if it is a base, and its rotation, if it has one.
+    /// Of each body, loose node and tip: its displacement, if it is a base, and its rotation, if it has one.
     pub bodies: Vec<(Option<usize>, Option<usize>)>,
     /// Of the first link; three for each.
     pub first_link: usize,
     /// Number of coordinates.
     pub coordinates: usize,
+}
+
+/// What stands after the bodies in a tree.
+#[derive(Clone, Debug, Default)]
+pub struct Extras {
+    /// Loose nodes, by index of the tether point.
+    pub loose: Vec<usize>,
+    /// Mass of the tip of each closure, lent by the body that it is tied to, kg.
+    pub tips_kg: Vec<f64>,
 }
 
 /// Factors of the matrix of one step, and scratch for its solutions.
@@ -57,8 +66,7 @@ pub struct LinkStages {
     knots: Vec<Carried>,
     /// What each limb carries at its distal end.
     carried: Vec<Symmetric3>,
-    /// Mass of the tip of each closure, lent by the body that it is tied to, kg.
-    tips_kg: Vec<f64>,
+    extras: Extras,
     loops: Loops,
     gaps: Vec<DVec3>,
     biases: Vec<LinkBias>,
@@ -75,13 +83,13 @@ pub struct LinkStages {
 }
 
 impl LinkStages {
-    /// For a tree made of a topology; `tips_kg` are the masses of the tips of its closures.
+    /// For a tree made of a topology.
     #[must_use]
     pub fn new(
         tree: KinematicTree,
         topology: Topology,
         places: JointPlaces,
-        tips_kg: Vec<f64>,
+        extras: Extras,
     ) -> Self {
         let (links, bodies) = (tree.links, tree.carried_by.len());
         Self {
@@ -95,7 +103,7 @@ impl LinkStages {
             carried: vec![Symmetric3::default(); tree.limbs.len()],
             loops: Loops::new(&tree, vec![1.0; tree.limbs.len()]),
             gaps: vec![DVec3::ZERO; tree.closures.len()],
-            tips_kg,
+            extras,
             biases: vec![LinkBias::default(); links],
             body_biases: vec![BodyBias::default(); bodies],
             flows: vec![DVec3::ZERO; links],
@@ -110,7 +118,7 @@ impl LinkStages {
         }
     }
 
-    /// Whether a body turns; a tip does not.
+    /// Whether a body turns; what stands after the bodies does not.
     fn turns(&self, body: usize) -> bool {
         self.topology
             .bodies
@@ -223,7 +231,15 @@ impl LinkStages {
         for (load, (body, (shift, speed))) in self.body_loads.iter_mut().zip(bodies) {
             *load = body.stage_load(g, *shift, *speed);
         }
-        for (closure, kg) in self.tree.closures.iter().zip(&self.tips_kg) {
+        for (body, point) in (self.topology.bodies.len()..).zip(&self.extras.loose) {
+            let point = &derivatives.points[*point];
+            let (shift, speed) = (self.motions[body].linear, self.speeds[body].linear);
+            self.body_loads[body] = Twist {
+                linear: g * point.mass_kg * speed - g * g * point.stiffness.times(shift),
+                angular: DVec3::ZERO,
+            };
+        }
+        for (closure, kg) in self.tree.closures.iter().zip(&self.extras.tips_kg) {
             let tip = self.speeds[closure.tip].linear;
             self.body_loads[closure.tip] = Twist {
                 linear: g * *kg * tip,
@@ -243,19 +259,23 @@ impl LinkStages {
         ends(&self.tree.limbs[limb], derivatives).1
     }
 
-    /// Places of a limb's proximal end on its parent, and of its distal end on the body or tip that it carries.
     fn places(&self, limb: &Limb, derivatives: &Derivatives) -> (Place, Place) {
-        let (proximal, distal) = ends(limb, derivatives);
-        if limb.child < self.topology.bodies.len() {
-            (proximal, distal)
-        } else {
-            (proximal, CENTRE)
-        }
+        places(limb, self.topology.bodies.len(), derivatives)
     }
 
-    /// Takes the masses of tips from the bodies that they are tied to.
-    fn lend(&mut self, derivatives: &Derivatives) {
-        for (index, kg) in self.tips_kg.iter().enumerate() {
+    /// Gives loose nodes and tips their masses: those of tips are taken from the bodies that they are tied to.
+    fn weigh_points(&mut self, derivatives: &Derivatives) {
+        for (body, point) in (self.topology.bodies.len()..).zip(&self.extras.loose) {
+            let point = &derivatives.points[*point];
+            self.blocks[body] = BodyBlock {
+                linear: Symmetric3::identity(point.mass_kg)
+                    .plus_scaled(point.damping, self.g)
+                    .plus_scaled(point.stiffness, self.g * self.g)
+                    .into(),
+                ..BodyBlock::ZERO
+            };
+        }
+        for (index, kg) in self.extras.tips_kg.iter().enumerate() {
             let closure = self.tree.closures[index];
             self.blocks[closure.tip] = BodyBlock::point(*kg);
             if let Some(body) = closure.onto {
@@ -274,10 +294,11 @@ impl LinkStages {
             carried: &self.carried,
         };
         let (tree, limbs) = (&self.tree, &self.tree.limbs);
+        let bodies = self.topology.bodies.len();
         self.loops.factorise(
             tree,
             &factors,
-            |limb| ends(&limbs[limb], derivatives).0,
+            |limb| places(&limbs[limb], bodies, derivatives).0,
             |closure, _| ends(&limbs[tree.closures[closure].limb], derivatives).1,
         );
     }
@@ -314,7 +335,7 @@ impl LinkStages {
 
     fn sweep_inward(&mut self, derivatives: &Derivatives) {
         for limb in self.tree.limbs.iter().rev() {
-            let (proximal, _) = ends(limb, derivatives);
+            let (proximal, _) = self.places(limb, derivatives);
             let child = limb.child;
             let bias = self.bodies[child].inward(-self.body_loads[child], DVec3::ZERO);
             self.body_biases[child] = bias;
@@ -351,7 +372,7 @@ impl LinkStages {
             }
         }
         for limb in &self.tree.limbs {
-            let (proximal, _) = ends(limb, derivatives);
+            let (proximal, _) = self.places(limb, derivatives);
             let mut at = limb
                 .parent
                 .map_or(DVec3::ZERO, |body| proximal.motion(self.motions[body]));
@@ -383,7 +404,7 @@ impl StageSolver for LinkStages {
             block.add(&body.damping, g);
             block.add(&body.stiffness, g * g);
         }
-        self.lend(derivatives);
+        self.weigh_points(derivatives);
         for index in (0..self.tree.limbs.len()).rev() {
             self.factorise_limb(index, derivatives, step_s)?;
         }
@@ -435,13 +456,22 @@ impl StageSolver for LinkStages {
                 .map_or(DVec3::ZERO, |body| proximal.motion(self.motions[body]));
             for (k, link) in limb.links.clone().enumerate() {
                 at += DVec3::from_slice(&change[self.places.first_link + 3 * link..]);
-                if k + 1 < limb.links.len() {
-                    let node = limb.distal_point(k) - line.first_point - 1;
+                let point = limb.distal_point(k);
+                if line.node_points().contains(&point) {
+                    let node = point - line.first_point - 1;
                     at.write_to_slice(&mut out[line.first_state + 3 * node..]);
                 }
             }
             let rotation = self.places.bodies[limb.child].1;
             self.motions[limb.child] = hung(at, &distal, rotation, change);
+        }
+        for (body, point) in (self.topology.bodies.len()..).zip(&self.extras.loose) {
+            let at = self.motions[body].linear;
+            let line = self.topology.lines.iter();
+            if let Some(line) = line.rev().find(|line| line.first_point < *point) {
+                let node = point - line.first_point - 1;
+                at.write_to_slice(&mut out[line.first_state + 3 * node..]);
+            }
         }
         for (site, motion) in self.topology.bodies.iter().zip(&self.motions) {
             let out = &mut out[site.first_state..site.first_state + 6];
@@ -484,6 +514,21 @@ fn ends(limb: &Limb, derivatives: &Derivatives) -> (Place, Place) {
     } else {
         (to.place, from.place)
     }
+}
+
+/// Places of a limb's proximal end on its parent, and of its distal end on what it carries: what stands after
+/// the `bodies` is a point, and has no place but itself.
+fn places(limb: &Limb, bodies: usize, derivatives: &Derivatives) -> (Place, Place) {
+    let (proximal, distal) = ends(limb, derivatives);
+    let is_body = |body: usize| body < bodies;
+    (
+        if limb.parent.is_none_or(is_body) {
+            proximal
+        } else {
+            CENTRE
+        },
+        if is_body(limb.child) { distal } else { CENTRE },
+    )
 }
 
 /// How a body moves whose place at the end of a limb moves by `at`, with its rotation read from `r`.

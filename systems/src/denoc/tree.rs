@@ -6,12 +6,15 @@
 //!
 //! A tether by which a body, or an anchor, is reached a second time closes a loop. It is cut at that end: it
 //! becomes a limb that carries a *tip*, a point of its own, and a [`Closure`] says where the tip has to stay
-//! ([`super::loops`]). Tips stand after the bodies wherever there is a list of these.
+//! ([`super::loops`]). Of a tether that has been severed during a run, each [`Piece`] is a limb; a node that is
+//! left at its end is *loose*, and counts as a body that is a point.
+//!
+//! Wherever there is a list of bodies, loose nodes stand after them, and tips after these.
 
 use std::ops::Range;
 
 use super::articulated_link::Stretch;
-use crate::linearised_motion::topology::{End, Topology};
+use crate::linearised_motion::topology::{End, Line, Topology};
 
 /// A tether as a limb of the tree: `links.len()` links from its proximal to its distal end.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,8 +29,36 @@ pub struct Limb {
     first_point: usize,
     /// The body that carries it; an anchor does if there is none.
     pub parent: Option<usize>,
-    /// The body, or tip, that it carries.
+    /// The body, loose node or tip that it carries.
     pub child: usize,
+}
+
+/// A tether, or what is left of it between cuts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Piece {
+    /// The tether, as a line of the topology.
+    pub line: usize,
+    /// Index of its first point, nearest to `from`, among all tether points.
+    pub first_point: usize,
+    /// Number of its links.
+    pub links: usize,
+    /// Who carries its first point; a loose node carries itself.
+    pub from: End,
+    /// Who carries its last point.
+    pub to: End,
+}
+
+impl From<(usize, &Line)> for Piece {
+    /// A line that is whole.
+    fn from((index, line): (usize, &Line)) -> Self {
+        Self {
+            line: index,
+            first_point: line.first_point,
+            links: line.nodes + 1,
+            from: line.from,
+            to: line.to,
+        }
+    }
 }
 
 /// A loop that is cut: the tip of a limb, and where it belongs.
@@ -99,7 +130,7 @@ pub struct KinematicTree {
     pub kinds: Vec<LinkKind>,
     /// Bodies that nothing carries.
     pub bases: Vec<usize>,
-    /// The limb that carries each body and each tip.
+    /// The limb that carries each body, each loose node and each tip.
     pub carried_by: Vec<Option<usize>>,
     /// Of each body, whether it is a point between two limbs: it passes on what it carries as a joint between
     /// links does.
@@ -111,27 +142,41 @@ pub struct KinematicTree {
 }
 
 impl KinematicTree {
-    /// The tree of a topology: `kinds` by line, `preferred` the bodies that are to be bases, the first of
-    /// a system first.
+    /// The tree of a topology whose lines are whole: `kinds` by line, `preferred` the bodies that are to be
+    /// bases, the first of a system first.
     #[must_use]
     pub fn new(topology: &Topology, kinds: &[LinkKind], preferred: &[usize]) -> Self {
+        let pieces: Vec<Piece> = topology.lines.iter().enumerate().map(Piece::from).collect();
+        let turns: Vec<bool> = topology.bodies.iter().map(|site| site.turns).collect();
+        Self::of_pieces(&pieces, &turns, kinds, preferred)
+    }
+
+    /// The tree of pieces of tethers between bodies and loose nodes, of which `turns` says whether they turn.
+    #[must_use]
+    pub fn of_pieces(
+        pieces: &[Piece],
+        turns: &[bool],
+        kinds: &[LinkKind],
+        preferred: &[usize],
+    ) -> Self {
+        let bodies = turns.len();
         let mut growth = Growth {
-            topology,
-            used: vec![false; topology.lines.len()],
-            reached: vec![false; topology.bodies.len()],
+            pieces,
+            used: vec![false; pieces.len()],
+            reached: vec![false; bodies],
             tree: Self {
-                carried_by: vec![None; topology.bodies.len()],
+                carried_by: vec![None; bodies],
                 ..Self::default()
             },
         };
-        for (index, line) in topology.lines.iter().enumerate() {
+        for (index, line) in pieces.iter().enumerate() {
             if line.from == End::Held || line.to == End::Held {
                 growth.grow_along(index, None);
             }
         }
         // The limbs of anchors are grown level by level, then those of each free base.
         growth.grow_from(0);
-        for body in preferred.iter().copied().chain(0..topology.bodies.len()) {
+        for body in preferred.iter().copied().chain(0..bodies) {
             if !growth.reached[body] {
                 growth.reached[body] = true;
                 growth.tree.bases.push(body);
@@ -144,7 +189,7 @@ impl KinematicTree {
         tree.kinds = tree.limbs.iter().map(|limb| kinds[limb.line]).collect();
         let is_knot = |body: usize| {
             let carries = tree.limbs.iter().filter(|limb| limb.parent == Some(body));
-            let turns = topology.bodies.get(body).is_some_and(|site| site.turns);
+            let turns = turns.get(body).is_some_and(|turns| *turns);
             !turns && tree.carried_by[body].is_some() && carries.count() == 1
         };
         tree.knots = (0..tree.carried_by.len()).map(is_knot).collect();
@@ -154,7 +199,7 @@ impl KinematicTree {
 
 /// A tree on its way.
 struct Growth<'a> {
-    topology: &'a Topology,
+    pieces: &'a [Piece],
     used: Vec<bool>,
     reached: Vec<bool>,
     tree: KinematicTree,
@@ -173,8 +218,8 @@ impl Growth<'_> {
     /// Grows all limbs that a body carries.
     fn grow_beyond(&mut self, body: usize) {
         let end = End::OnBody(body);
-        for index in 0..self.topology.lines.len() {
-            let line = &self.topology.lines[index];
+        for index in 0..self.pieces.len() {
+            let line = &self.pieces[index];
             if !self.used[index] && (line.from == end || line.to == end) {
                 self.grow_along(index, Some(body));
             }
@@ -183,7 +228,7 @@ impl Growth<'_> {
 
     /// Adds a tether that `parent` carries, unless it has been added from its other end.
     fn grow_along(&mut self, index: usize, parent: Option<usize>) {
-        let line = self.topology.lines[index];
+        let line = self.pieces[index];
         let proximal = parent.map_or(End::Held, End::OnBody);
         let is_from_outward = line.from == proximal;
         let distal = if is_from_outward { line.to } else { line.from };
@@ -196,17 +241,17 @@ impl Growth<'_> {
             End::Held => self.tie_tip(None),
         };
         self.used[index] = true;
-        let links = self.tree.links..self.tree.links + line.nodes + 1;
+        let links = self.tree.links..self.tree.links + line.links;
         self.tree.links = links.end;
         self.tree.carried_by[child] = Some(self.tree.limbs.len());
         self.tree.limbs.push(Limb {
-            line: index,
+            line: line.line,
             links,
             is_from_outward,
             first_point: if is_from_outward {
                 line.first_point
             } else {
-                line.last_point()
+                line.first_point + line.links
             },
             parent,
             child,
@@ -226,7 +271,7 @@ impl Growth<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linearised_motion::topology::{BodySite, Line};
+    use crate::linearised_motion::topology::BodySite;
 
     fn topology(bodies: usize, ends: &[(End, End)]) -> Topology {
         let mut lines = Vec::new();

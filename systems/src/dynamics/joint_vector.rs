@@ -44,6 +44,8 @@ pub struct JointVector {
     components: TreeComponents,
     first_order: FirstOrderStates,
     first_order_count: usize,
+    /// Where loose nodes that are bases count from, m.
+    loose_origins_m: Vec<DVec3>,
     /// Scratch: a change that closes loops.
     change: Accelerations,
 }
@@ -71,6 +73,7 @@ impl JointVector {
             components: TreeComponents::new(world),
             first_order: FirstOrderStates::new(world),
             first_order_count,
+            loose_origins_m: Vec::new(),
             change: world.resource::<LinkMechanism>().accelerations.clone(),
         }
     }
@@ -179,8 +182,27 @@ impl JointVector {
         }
     }
 
+    /// Writes the state of loose nodes that are bases.
+    fn write_loose(&self, state: &mut [f64]) {
+        let (coordinates, velocities) = state.split_at_mut(self.places.coordinates);
+        for (origin_m, body) in self
+            .loose_origins_m
+            .iter()
+            .zip(self.components.loose_from..)
+        {
+            if let BodyPlace::Base(at) = self.places.bodies[body] {
+                let centre = self.components.bodies[body].centre;
+                (centre.position_m - *origin_m).write_to_slice(&mut coordinates[at..]);
+                centre.velocity_m_s.write_to_slice(&mut velocities[at..]);
+            }
+        }
+    }
+
     /// From bases and links to all points and bodies.
     fn sweep(&mut self, mechanism: &LinkMechanism) {
+        for (body, loose) in mechanism.entities.loose_bodies() {
+            self.components.points[loose.point] = self.components.bodies[body].centre;
+        }
         sweep_outward(
             &mechanism.tree,
             &self.links,
@@ -246,6 +268,9 @@ impl StateSpace for JointVector {
                 &mut state[..2 * n],
             );
         }
+        let loose = self.components.bodies[self.components.loose_from..].iter();
+        self.loose_origins_m = loose.map(|body| body.centre.position_m).collect();
+        self.write_loose(&mut state[..2 * n]);
         let (rates, _) = state[n + self.places.first_link..2 * n].as_chunks_mut::<3>();
         for (out, rate) in rates.iter_mut().zip(&self.links.rate_m_s) {
             *out = rate.to_array();
@@ -269,6 +294,18 @@ impl StateSpace for JointVector {
             if let Some(at) = place.rotation() {
                 body.attitude = chart.0 * exponential(DVec3::from_slice(&coordinates[at..]));
                 body.rate_rad_s = DVec3::from_slice(&velocities[at..]);
+            }
+        }
+        for (origin_m, body) in self
+            .loose_origins_m
+            .iter()
+            .zip(self.components.loose_from..)
+        {
+            if let BodyPlace::Base(at) = self.places.bodies[body] {
+                self.components.bodies[body].centre = PointState {
+                    position_m: *origin_m + DVec3::from_slice(&coordinates[at..]),
+                    velocity_m_s: DVec3::from_slice(&velocities[at..]),
+                };
             }
         }
         let (q, _) = coordinates[self.places.first_link..].as_chunks::<3>();
@@ -346,6 +383,9 @@ impl StateSpace for JointVector {
             state[at..at + 3].fill(0.0);
             rates[at..at + 3].copy_from_slice(&state[n + at..n + at + 3]);
         }
+        if is_changed {
+            self.write_loose(&mut state[..2 * n]);
+        }
         let found = &world.resource::<LinkMechanism>().accelerations.span_m_s2;
         let spans = self.links.span_m.iter().zip(&self.links.rate_m_s);
         let links = self.charts.iter_mut().zip(&self.kinds).zip(spans);
@@ -387,6 +427,10 @@ impl StateSpace for JointVector {
             .bodies
             .iter()
             .rposition(|at| starts(at).is_some_and(|at| at <= place))?;
-        Some(entities.bodies[body])
+        let loose = body.checked_sub(entities.bodies.len());
+        match loose {
+            None => entities.bodies.get(body).copied(),
+            Some(loose) => entities.loose.get(loose).map(|loose| loose.node),
+        }
     }
 }

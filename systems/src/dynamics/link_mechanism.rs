@@ -10,16 +10,29 @@ use crate::denoc::kinematics::{BodyState, LinkStates};
 use crate::denoc::tree::KinematicTree;
 use crate::linearised_motion::body_block::BodyBlock;
 
+/// A node that is left at the end of a severed tether.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LooseNode {
+    /// The node.
+    pub node: Entity,
+    /// Its index among all tether points.
+    pub point: usize,
+    /// Its mass, kg.
+    pub mass_kg: f64,
+}
+
 /// A tree with the entities that stand at its ends.
 #[derive(Clone, Debug, Default)]
 pub struct TreeEntities {
     /// Of each body.
     pub bodies: Vec<Entity>,
+    /// Of each loose node; they stand after the bodies in the tree.
+    pub loose: Vec<LooseNode>,
     /// The anchor of each limb that has one.
     pub anchors: Vec<Option<Entity>>,
     /// The segment of each link, by its place in the tree.
     pub segments: Vec<Entity>,
-    /// Which bodies, and tips, turn.
+    /// Which bodies, loose nodes and tips turn.
     pub turns: Vec<bool>,
     /// Where tethers are attached.
     pub offsets: Offsets,
@@ -56,6 +69,13 @@ pub struct LinkMechanism {
     pub link_of_segment: Vec<usize>,
 }
 
+impl TreeEntities {
+    /// Loose nodes with their places among the bodies of the tree.
+    pub fn loose_bodies(&self) -> impl Iterator<Item = (usize, &LooseNode)> {
+        (self.bodies.len()..).zip(&self.loose)
+    }
+}
+
 impl LinkMechanism {
     /// For a tree of these entities.
     #[must_use]
@@ -67,6 +87,9 @@ impl LinkMechanism {
             }
         }
         let mut loads = Loads::new(&tree, entities.points);
+        for (body, loose) in entities.loose_bodies() {
+            loads.bodies[body].mass = BodyBlock::point(loose.mass_kg);
+        }
         for (closure, kg) in tree.closures.iter().zip(&entities.tips_kg) {
             loads.bodies[closure.tip] = BodyLoad {
                 mass: BodyBlock::point(*kg),

@@ -94,6 +94,9 @@ pub fn solve_links(
         let mass = mass_of(own, added, inertia, &carried, motion.0);
         loads.bodies[index.0] = load_of(mass, (inertia, &carried), motion, forces);
     }
+    for (body, loose) in entities.loose_bodies() {
+        loads.bodies[body].load.linear = loads.point_n[loose.point];
+    }
     let limbs = loads.anchor_m_s2.iter_mut().zip(&entities.anchors);
     let ties = loads.tie_m_s2.iter_mut().zip(&entities.ties);
     for (acceleration, anchor) in limbs.chain(ties) {
@@ -110,6 +113,10 @@ pub fn solve_links(
     );
     if let Err(massless) = solved {
         faults.report(None, || massless.to_string());
+    }
+    let found = &mut mechanism.accelerations;
+    for (body, loose) in mechanism.entities.loose_bodies() {
+        found.point_m_s2[loose.point] = found.bodies[body].linear;
     }
 }
 

@@ -52,8 +52,10 @@ type Masses = (
 pub struct TreeComponents {
     /// By index of the tether point.
     pub points: Vec<PointState>,
-    /// By index of the body; then of tips.
+    /// By index of the body; then of loose nodes and of tips.
     pub bodies: Vec<BodyState>,
+    /// Where loose nodes begin among the bodies.
+    pub loose_from: usize,
     /// Of each limb that has one.
     pub anchors: Vec<BodyState>,
     /// Of each closure that has one.
@@ -70,6 +72,7 @@ impl TreeComponents {
         let mechanism = world.resource::<LinkMechanism>();
         let (tree, points) = (&mechanism.tree, mechanism.entities.points);
         Self {
+            loose_from: mechanism.entities.bodies.len(),
             bodies: vec![BodyState::default(); tree.carried_by.len()],
             anchors: vec![BodyState::default(); tree.limbs.len()],
             ties: vec![BodyState::default(); tree.closures.len()],
@@ -101,6 +104,9 @@ impl TreeComponents {
         }
         self.read_anchors(world);
         let mechanism = world.resource::<LinkMechanism>();
+        for (body, loose) in mechanism.entities.loose_bodies() {
+            self.bodies[body].centre = self.points[loose.point];
+        }
         let offsets = &mechanism.entities.offsets;
         for (index, closure) in mechanism.tree.closures.iter().enumerate() {
             let onto = closure

@@ -225,7 +225,7 @@ fn compare(
     }
     let ready = ready(&topology, &given);
     let n = places.coordinates;
-    let mut system = LinkStages::new(tree, topology, places, Vec::new());
+    let mut system = LinkStages::new(tree, topology, places, Extras::default());
     system.factorise(&ready, STEP_S, GAMMA).unwrap();
     let mut r: Vec<f64> = r_x.iter().chain(&r_v).copied().chain([2.0]).collect();
     system.solve(&ready, &mut r);
