@@ -285,7 +285,8 @@ fn a_long_pay_out_and_back_stays_calm() {
             2e-4,
         );
     }
-    // 300 m are out at 210 s, with a strain of 0.0046; new nodes shake the line a little, drag of the probe at 1 m/s is below 1 N.
+    // 300 m are out at 210 s, with a strain of 0.0046. 1 mm, what is asked for, are 10 N of the segment at the
+    // winch: means over some seconds are ten times as good.
     let power_w = channel(frame_at(&results, 210.0), "tether", "winch_power_w");
     assert_relative(
         "power",
@@ -294,7 +295,9 @@ fn a_long_pay_out_and_back_stays_calm() {
         5e-3,
     );
     let largest_n = summary.largest_tension.unwrap().tension_n;
-    assert!(largest_n < 1.5 * weight_n(500.0), "{largest_n}");
+    // The winch stops at once, and for a moment the damper of its segment, 500 N s/m x 5, has all of 1 m/s.
+    let stop_n = weight_n(500.0) + 2500.0;
+    assert!(largest_n < 1.02 * stop_n, "{largest_n}");
     let (start, end) = (
         position(&results, "probe", 0.0),
         position(&results, "probe", 900.0),

@@ -21,7 +21,7 @@ use crate::dynamics::rotation_chart::exponential;
 const CLOSED: f64 = 1e-10;
 /// Gaps that a projection leaves are below this, m, or as small as it can make them.
 const TIGHT_M: f64 = 1e-12;
-const PASSES_AFTER_STEP: usize = 3;
+const PASSES_AFTER_STEP: usize = 8;
 const PASSES_AT_START: usize = 50;
 
 /// What a gap consists of.
