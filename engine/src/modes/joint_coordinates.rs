@@ -1,11 +1,13 @@
 //! The linearised motion of rigid links, in the coordinates that joints leave free.
 //!
 //! With the coordinates `q = Z y` of a basis Z, orthonormal and each column moving one body or one link,
-//! `y'' = Z' q''`, and K and D are differences of that. A further restriction, such as that of a
-//! closed loop, is a smaller basis: nothing else here would change.
+//! `y'' = Z' q''`, and K and D are differences of that. Where loops are closed, Z is restricted to the motions
+//! that keep them closed.
 
 use aerobot_components::state::{AngularVelocity, Velocity};
 use aerobot_systems::denoc::articulated_link::Stretch;
+use aerobot_systems::denoc::closed_dynamics::gaps;
+use aerobot_systems::denoc::kinematics::BodyState;
 use aerobot_systems::dynamics::joint_layout::{BodyPlace, JointLayout};
 use aerobot_systems::dynamics::link_mechanism::LinkMechanism;
 use aerobot_systems::dynamics::state_space::StateSpace;
@@ -13,6 +15,7 @@ use aerobot_systems::fault::Fault;
 use aerobot_systems::modes::Complex;
 use aerobot_systems::modes::dense_motion::DenseMotion;
 use aerobot_systems::modes::extrapolated_difference::differentiate;
+use aerobot_systems::modes::null_space::null_space;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
 use glam::DVec3;
@@ -41,6 +44,8 @@ struct Direction {
 /// The free directions of the coordinates.
 pub(super) struct JointBasis {
     directions: Vec<Direction>,
+    /// Of each column of Z its parts along the directions, where loops are closed; else Z is the directions.
+    combinations: Option<Vec<Vec<f64>>>,
 }
 
 /// A world of links that is moved about a state.
@@ -86,34 +91,66 @@ impl JointBasis {
                 }
             }
         }
-        Self { directions }
+        Self {
+            directions,
+            combinations: None,
+        }
     }
 
-    /// Number of directions.
+    /// Number of columns of Z.
     pub(super) fn len(&self) -> usize {
-        self.directions.len()
+        match &self.combinations {
+            None => self.directions.len(),
+            Some(combinations) => combinations.len(),
+        }
     }
 
-    /// Amplitudes along the directions of a vector of coordinates.
+    /// Amplitudes along the basis of a vector of coordinates.
     pub(super) fn parts(&self, coordinates: &[f64]) -> Vec<f64> {
-        let parts = self.directions.iter();
-        parts
-            .map(|direction| {
-                direction
-                    .along
-                    .dot(DVec3::from_slice(&coordinates[direction.at..]))
-            })
-            .collect()
+        let parts = self.directions.iter().map(|direction| {
+            direction
+                .along
+                .dot(DVec3::from_slice(&coordinates[direction.at..]))
+        });
+        match &self.combinations {
+            None => parts.collect(),
+            Some(combinations) => {
+                let parts: Vec<f64> = parts.collect();
+                let along = |column: &Vec<f64>| column.iter().zip(&parts).map(|(a, b)| a * b).sum();
+                combinations.iter().map(along).collect()
+            }
+        }
     }
 
-    /// Adds a multiple of a direction to coordinates.
+    /// Adds a multiple of a column of Z to coordinates.
     fn move_along(&self, k: usize, by: f64, coordinates: &mut [f64]) {
-        let direction = &self.directions[k];
-        let change = by * direction.along;
-        for (value, change) in coordinates[direction.at..]
-            .iter_mut()
-            .zip(change.to_array())
-        {
+        match &self.combinations {
+            None => self.directions[k].move_along(by, coordinates),
+            Some(combinations) => {
+                for (direction, part) in self.directions.iter().zip(&combinations[k]) {
+                    direction.move_along(by * part, coordinates);
+                }
+            }
+        }
+    }
+
+    /// Largest step of differences along a column of Z.
+    fn step(&self, k: usize) -> f64 {
+        match &self.combinations {
+            None => self.directions[k].step,
+            Some(combinations) => {
+                let parts = self.directions.iter().zip(&combinations[k]);
+                let steps = parts.map(|(direction, part)| direction.step / part.abs().max(1e-3));
+                steps.fold(f64::INFINITY, f64::min)
+            }
+        }
+    }
+}
+
+impl Direction {
+    fn move_along(&self, by: f64, coordinates: &mut [f64]) {
+        let change = by * self.along;
+        for (value, change) in coordinates[self.at..].iter_mut().zip(change.to_array()) {
             *value += change;
         }
     }
@@ -131,6 +168,47 @@ fn across(along: DVec3) -> [DVec3; 2] {
 }
 
 impl JointWorld<'_> {
+    /// The free directions of the coordinates, and of them what keeps loops closed.
+    pub(super) fn basis(&mut self) -> Result<JointBasis, Fault> {
+        let mut basis = JointBasis::of(self.world);
+        if self
+            .world
+            .resource::<LinkMechanism>()
+            .tree
+            .closures
+            .is_empty()
+        {
+            return Ok(basis);
+        }
+        // The gaps of tips change linearly with velocities: a row of constraints for each of their parts.
+        let steady = self.gap_rates(&basis, None)?;
+        let mut rows = vec![vec![0.0; basis.len()]; steady.len()];
+        for k in 0..basis.len() {
+            let moved = self.gap_rates(&basis, Some(k))?;
+            for (row, (moved, steady)) in rows.iter_mut().zip(moved.iter().zip(&steady)) {
+                row[k] = moved - steady;
+            }
+        }
+        basis.combinations = Some(null_space(&rows, basis.len()));
+        Ok(basis)
+    }
+
+    /// How fast tips leave their places in the steady state, with 1 m/s or rad/s along a direction besides.
+    fn gap_rates(&mut self, basis: &JointBasis, along: Option<usize>) -> Result<Vec<f64>, Fault> {
+        let coordinates = self.state.layout().coordinates;
+        let mut state = self.steady.to_vec();
+        if let Some(k) = along {
+            basis.move_along(k, 1.0, &mut state[coordinates..]);
+        }
+        self.state.scatter(self.world, &state)?;
+        let mechanism = self.world.resource::<LinkMechanism>();
+        // What anchors do is the same in all of them.
+        let anchors = vec![BodyState::default(); mechanism.tree.closures.len()];
+        let offsets = &mechanism.entities.offsets;
+        let gaps = gaps(&mechanism.tree, &mechanism.bodies, &anchors, offsets);
+        Ok(gaps.iter().flat_map(|gap| gap[1].to_array()).collect())
+    }
+
     /// The linearised motion, and the first-order states that take part in it.
     pub(super) fn linearise(
         &mut self,
@@ -143,7 +221,7 @@ impl JointWorld<'_> {
         motion.mass.fill_diagonal(1.0);
         let mut column = vec![0.0; n + m];
         for k in 0..n {
-            let steps = [basis.directions[k].step, VELOCITY_STEP];
+            let steps = [basis.step(k), VELOCITY_STEP];
             for (part, step) in steps.into_iter().enumerate() {
                 column.fill(0.0);
                 differentiate(&mut column, step, |h, out| {

@@ -11,7 +11,7 @@ use aerobot_systems::modes::eigenmodes::{Eigenmode, Method, slowest};
 use bevy_ecs::world::World;
 
 use super::body_coordinates;
-use super::joint_coordinates::{JointBasis, JointWorld};
+use super::joint_coordinates::JointWorld;
 use super::linear_motion::LinearMotion;
 use super::naming;
 use super::neutral::{Candidate, candidates, independent};
@@ -148,7 +148,8 @@ fn of_links(
     request: &ModesRequest,
     found: &mut Modes,
 ) -> Result<(), SetupError> {
-    let basis = JointBasis::of(links.world);
+    let basis = links.basis();
+    let basis = basis.map_err(|fault| refused(links.world, &fault))?;
     check_size(basis.len())?;
     let method = method(request, basis.len());
     let linearised = links.linearise(&basis);

@@ -14,6 +14,7 @@ pub mod cluster;
 pub mod dense_motion;
 pub mod eigenmodes;
 pub mod extrapolated_difference;
+pub mod null_space;
 pub mod real_eigenvectors;
 pub mod shift_invert;
 pub mod sparse_motion;
