@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::articulated_link::Stretch;
 use super::forward_dynamics::{Accelerations, ForwardDynamics, Loads, Massless};
 use super::kinematics::{BodyState, LimbOffsets, LinkStates};
 use super::loops::Loops;
@@ -62,6 +63,8 @@ impl ClosedDynamics {
             &self.tree.factors(),
             |limb| self.tree.proximal(limb),
             |closure, body| Place::new(bodies[body].attitude, offsets.ties_m[closure]),
+            |limb| self.tree.distal(limb),
+            |limb| chord(tree, states.0, limb),
         );
         for (index, closure) in tree.closures.iter().enumerate() {
             let besides = match closure.onto {
@@ -80,6 +83,11 @@ impl ClosedDynamics {
         Ok(())
     }
 
+    /// Takes from gaps of tips what the lengths of redundant tethers say twice, as far as the last solution tells.
+    pub fn drop_redundant(&self, gaps: &mut [DVec3]) {
+        self.loops.drop_redundant(gaps);
+    }
+
     /// The change, of positions or of velocities, that closes `gaps` of tips from their places (m or m/s) with
     /// the least of mass moved: -M^-1 G' (G M^-1 G')^-1 times the gaps, at the state that was solved last.
     /// Momentum and centre of mass of what is free stay as they are.
@@ -94,6 +102,14 @@ impl ClosedDynamics {
         self.loops.add_loads(&mut self.loads);
         self.tree.respond(tree, &mut self.loads, out);
     }
+}
+
+/// The chord of a limb, its length (m) and whether it is rigid.
+fn chord(tree: &KinematicTree, links: &LinkStates, limb: usize) -> (DVec3, f64, bool) {
+    let (own, kind) = (tree.limbs[limb].links.clone(), &tree.kinds[limb]);
+    let length_m = kind.length_m * own.len() as f64;
+    let is_rigid = kind.stretch == Stretch::Rigid;
+    (links.span_m[own].iter().sum(), length_m, is_rigid)
 }
 
 /// Of each closure, how far its tip is from its place (m) and how fast it leaves it (m/s); `anchors` has the

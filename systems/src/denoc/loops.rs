@@ -15,7 +15,10 @@
 //! **Redundant loops.** Three rigid tethers between two bodies are independent; of four, one is more than
 //! the lengths can tell: A is singular, and forces with G' lambda = 0 could be added. Tethers that are
 //! almost rigid are not in doubt: they share the load so that their elastic energy is the least
-//! (Castigliano). So with H_i the force with which limb i holds what it carries, and kappa_i its compliance,
+//! (Castigliano). Where the tethers of a graph are straight, [`super::self_stress`] says in advance which
+//! combinations are redundant, and `shared_load.rs` puts the energy in the place of what they would say twice.
+//! What becomes singular on the way is regularised: with H_i the force with which limb i holds what it carries,
+//! and kappa_i its compliance,
 //!
 //! ```text
 //! (A + eps sum_i R_i' kappa_i R_i) lambda = c - G a_tree - eps sum_i R_i' kappa_i H_i(tree)    R_i = dH_i/dlambda
@@ -30,8 +33,13 @@
 
 use glam::DVec3;
 
+mod shared_load;
+
+use shared_load::SharedLoad;
+
 use super::articulated_link::Coupling;
 use super::reduced_tree::{Factors, ReducedTree};
+use super::self_stress::{SelfStress, Strut};
 use super::tree::KinematicTree;
 use crate::linearised_motion::body_block::{Place, Twist};
 
@@ -65,6 +73,11 @@ pub struct Loops {
     factor: Vec<f64>,
     multipliers: Vec<f64>,
     step: Vec<f64>,
+    stress: SelfStress,
+    /// Unit vectors along the limbs.
+    chords: Vec<DVec3>,
+    /// In the place of the factor, where there are states of self-stress.
+    shared: Option<SharedLoad>,
 }
 
 impl Loops {
@@ -85,15 +98,18 @@ impl Loops {
     }
 
     /// Finds A and its factors from a factorised tree: `proximal` is the place of each limb on its parent,
-    /// `onto` the place of each tip on its body.
+    /// `onto` the place of each tip on its body, `chord` the chord of each limb with its length (m) and whether
+    /// it is rigid.
     pub fn factorise<E: Coupling>(
         &mut self,
         tree: &KinematicTree,
         factors: &Factors<'_, E>,
         proximal: impl Fn(usize) -> Place,
         onto: impl Fn(usize, usize) -> Place,
+        distal: impl Fn(usize) -> Place,
+        chord: impl Fn(usize) -> (DVec3, f64, bool),
     ) {
-        self.reduced.take(tree, factors, proximal);
+        self.reduced.take(tree, factors, &proximal);
         self.ties.clear();
         for (index, closure) in tree.closures.iter().enumerate() {
             self.ties.push(Tie {
@@ -119,7 +135,60 @@ impl Loops {
                 }
             }
         }
-        self.factorise_matrix();
+        let struts = self.struts(tree, proximal, distal, chord);
+        self.stress.find(&struts);
+        self.shared = None;
+        if self.stress.states.is_empty() {
+            self.factorise_matrix();
+            return;
+        }
+        self.chords.clear();
+        self.chords.extend(struts.iter().map(Strut::direction));
+        let tips: Vec<usize> = tree.closures.iter().map(|closure| closure.limb).collect();
+        self.shared = Some(SharedLoad::new(
+            &self.matrix,
+            &self.stress.states,
+            &self.chords,
+            &tips,
+            (&self.holds, &self.compliance),
+        ));
+    }
+
+    /// The limbs as struts between bodies.
+    fn struts(
+        &self,
+        tree: &KinematicTree,
+        proximal: impl Fn(usize) -> Place,
+        distal: impl Fn(usize) -> Place,
+        chord: impl Fn(usize) -> (DVec3, f64, bool),
+    ) -> Vec<Strut> {
+        let limbs = tree.limbs.iter().enumerate();
+        limbs
+            .map(|(index, limb)| {
+                let tie = tree
+                    .closures
+                    .iter()
+                    .position(|closure| closure.limb == index);
+                let (chord_m, length_m, is_rigid) = chord(index);
+                Strut {
+                    chord_m,
+                    length_m,
+                    is_rigid,
+                    near: limb.parent.map(|body| (body, proximal(index))),
+                    far: match tie {
+                        None => Some((limb.child, distal(index))),
+                        Some(tie) => self.ties[tie].onto,
+                    },
+                }
+            })
+            .collect()
+    }
+
+    /// Takes from gaps of tips what the lengths of redundant tethers say twice, and no multiplier answers for.
+    pub fn drop_redundant(&self, gaps: &mut [DVec3]) {
+        if let Some(shared) = &self.shared {
+            shared.drop_redundant(gaps);
+        }
     }
 
     /// Puts a force on a tip, and its opposite on the place of the tip.
@@ -174,6 +243,10 @@ impl Loops {
     /// places, less those wanted) vanish; `holds` are the forces of the limbs without them, where loads are
     /// to be shared.
     pub fn close(&mut self, gaps: &[DVec3], holds: Option<&[DVec3]>) {
+        if let Some(shared) = &self.shared {
+            shared.solve(gaps, &self.chords, holds, &mut self.multipliers);
+            return;
+        }
         let n = self.multipliers.len();
         let wanted = |row: usize| -gaps[row / 3][row % 3];
         self.multipliers.fill(0.0);

@@ -44,5 +44,6 @@ pub mod joint_coordinates;
 pub mod kinematics;
 pub mod loops;
 pub mod reduced_tree;
+pub mod self_stress;
 pub mod stage_system;
 pub mod tree;

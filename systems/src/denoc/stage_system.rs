@@ -300,6 +300,8 @@ impl LinkStages {
             &factors,
             |limb| places(&limbs[limb], bodies, derivatives).0,
             |closure, _| ends(&limbs[tree.closures[closure].limb], derivatives).1,
+            |limb| places(&limbs[limb], bodies, derivatives).1,
+            |limb| chord(tree, limb, derivatives),
         );
     }
 
@@ -529,6 +531,18 @@ fn places(limb: &Limb, bodies: usize, derivatives: &Derivatives) -> (Place, Plac
         },
         if is_body(limb.child) { distal } else { CENTRE },
     )
+}
+
+/// The chord of a limb, its length (m) and whether it is rigid.
+fn chord(tree: &KinematicTree, limb: usize, derivatives: &Derivatives) -> (DVec3, f64, bool) {
+    let (limb, kind) = (&tree.limbs[limb], &tree.kinds[limb]);
+    let span = |k: usize| {
+        let segment = &derivatives.segments[limb.segment(k)];
+        limb.sign() * segment.length_m * segment.direction
+    };
+    let chord_m = (0..limb.links.len()).map(span).sum();
+    let length_m = kind.length_m * limb.links.len() as f64;
+    (chord_m, length_m, kind.stretch == Stretch::Rigid)
 }
 
 /// How a body moves whose place at the end of a limb moves by `at`, with its rotation read from `r`.

@@ -26,6 +26,12 @@ impl ForwardDynamics {
         self.ends[limb][0].place
     }
 
+    /// Where the last solution had the distal end of a limb on what it carries.
+    #[must_use]
+    pub fn distal(&self, limb: usize) -> Place {
+        self.ends[limb][1].place
+    }
+
     /// The force with which each limb held what it carries in a solution with these accelerations, N.
     pub fn holds(&self, tree: &KinematicTree, found: &Accelerations, holds: &mut Vec<DVec3>) {
         holds.clear();

@@ -33,7 +33,12 @@ enum Of {
 
 impl JointVector {
     /// Gaps of the tips, and the largest.
-    fn gaps(&self, mechanism: &LinkMechanism, of: Of) -> (Vec<DVec3>, f64) {
+    fn gaps(
+        &self,
+        mechanism: &LinkMechanism,
+        dynamics: &ClosedDynamics,
+        of: Of,
+    ) -> (Vec<DVec3>, f64) {
         let components = &self.components;
         let offsets = &mechanism.entities.offsets;
         let found = gaps(
@@ -42,7 +47,8 @@ impl JointVector {
             &components.ties,
             offsets,
         );
-        let gaps: Vec<DVec3> = found.iter().map(|gap| gap[of as usize]).collect();
+        let mut gaps: Vec<DVec3> = found.iter().map(|gap| gap[of as usize]).collect();
+        dynamics.drop_redundant(&mut gaps);
         let largest = gaps.iter().map(|gap| gap.length()).fold(0.0, f64::max);
         (gaps, largest)
     }
@@ -54,10 +60,6 @@ impl JointVector {
         }
         let mut dynamics = mechanism.dynamics.clone();
         for _ in 0..PASSES_AT_START {
-            let (gaps, largest_m) = self.gaps(mechanism, Of::Position);
-            if largest_m <= TIGHT_M {
-                break;
-            }
             let solved = dynamics.solve(
                 &mechanism.tree,
                 (&self.links, &self.components.bodies),
@@ -66,6 +68,10 @@ impl JointVector {
                 &mut self.change,
             );
             if solved.is_err() {
+                break;
+            }
+            let (gaps, largest_m) = self.gaps(mechanism, &dynamics, Of::Position);
+            if largest_m <= TIGHT_M {
                 break;
             }
             dynamics.closing_change(&mechanism.tree, &gaps, &mut self.change);
@@ -81,20 +87,20 @@ impl JointVector {
         if mechanism.tree.closures.is_empty() {
             return false;
         }
-        let positions = self.gaps(mechanism, Of::Position).1;
-        let velocities = self.gaps(mechanism, Of::Velocity).1;
-        if positions.max(velocities) <= CLOSED {
-            return false;
-        }
         let mut dynamics = std::mem::take(&mut mechanism.dynamics);
-        self.project(mechanism, &mut dynamics);
+        let positions = self.gaps(mechanism, &dynamics, Of::Position).1;
+        let velocities = self.gaps(mechanism, &dynamics, Of::Velocity).1;
+        let has_opened = positions.max(velocities) > CLOSED;
+        if has_opened {
+            self.project(mechanism, &mut dynamics);
+        }
         mechanism.dynamics = dynamics;
-        true
+        has_opened
     }
 
     fn project(&mut self, mechanism: &LinkMechanism, dynamics: &mut ClosedDynamics) {
         for _ in 0..PASSES_AFTER_STEP {
-            let (gaps, largest_m) = self.gaps(mechanism, Of::Position);
+            let (gaps, largest_m) = self.gaps(mechanism, dynamics, Of::Position);
             if largest_m <= TIGHT_M {
                 break;
             }
@@ -103,7 +109,7 @@ impl JointVector {
             self.sweep(mechanism);
         }
         for _ in 0..PASSES_AFTER_STEP {
-            let (gaps, largest_m_s) = self.gaps(mechanism, Of::Velocity);
+            let (gaps, largest_m_s) = self.gaps(mechanism, dynamics, Of::Velocity);
             if largest_m_s <= TIGHT_M {
                 break;
             }
