@@ -82,7 +82,7 @@ fn assert_limit(scene: &str, lines: Lines, bodies: &[&str]) {
     let fly = |more: &[&str], lines: &[String]| {
         let lines = lines.iter().map(String::as_str);
         let all: Vec<&str> = more.iter().copied().chain(lines).collect();
-        fly_scene(scene, &[&["run.duration_s=25"], &all[..]].concat())
+        fly_scene(scene, &[&["run.duration_s=55"], &all[..]].concat())
     };
     let tight = "run.integrator=Adaptive(relative_tolerance: 1e-8)";
     let links = fly(&[DENOC, "run.links=PointMass", tight], &stiffer(lines, 1.0));
