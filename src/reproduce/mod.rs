@@ -5,6 +5,7 @@
 
 pub mod performance;
 pub mod towing;
+pub mod yaw;
 
 use std::path::Path;
 use std::{fs, io};
@@ -35,7 +36,11 @@ pub trait Case {
 /// All cases, in the order of the paper.
 #[must_use]
 pub fn cases() -> Vec<Box<dyn Case>> {
-    vec![Box::new(performance::Performance), Box::new(towing::Towing)]
+    vec![
+        Box::new(performance::Performance),
+        Box::new(yaw::Yaw),
+        Box::new(towing::Towing),
+    ]
 }
 
 /// What may be asked of a case; what is left open is as the case has it.
