@@ -46,6 +46,8 @@ pub(super) struct JointBasis {
     directions: Vec<Direction>,
     /// Of each column of Z its parts along the directions, where loops are closed; else Z is the directions.
     combinations: Option<Vec<Vec<f64>>>,
+    /// How many constraints of loops are said twice.
+    redundant: usize,
 }
 
 /// A world of links that is moved about a state.
@@ -94,7 +96,13 @@ impl JointBasis {
         Self {
             directions,
             combinations: None,
+            redundant: 0,
         }
+    }
+
+    /// Whether rigid tethers are redundant, so that waves in them are not quite their own.
+    pub(super) fn is_redundant(&self) -> bool {
+        self.redundant > 0
     }
 
     /// Number of columns of Z.
@@ -189,7 +197,9 @@ impl JointWorld<'_> {
                 row[k] = moved - steady;
             }
         }
-        basis.combinations = Some(null_space(&rows, basis.len()));
+        let free = null_space(&rows, basis.len());
+        basis.redundant = rows.len() + free.len() - basis.directions.len();
+        basis.combinations = Some(free);
         Ok(basis)
     }
 

@@ -151,6 +151,13 @@ fn of_links(
     let basis = links.basis();
     let basis = basis.map_err(|fault| refused(links.world, &fault))?;
     check_size(basis.len())?;
+    if basis.is_redundant() {
+        found.notes.push(
+            "rigid tethers are redundant here: the damping of waves in them is known to some 1e-4 only; \
+             `LumpedMass` has it exactly"
+                .to_owned(),
+        );
+    }
     let method = method(request, basis.len());
     let linearised = links.linearise(&basis);
     let (mut motion, first_order) = linearised.map_err(|fault| refused(links.world, &fault))?;
