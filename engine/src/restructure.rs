@@ -3,13 +3,14 @@
 
 use std::sync::Arc;
 
-use aerobot_systems::integration::StepFailure;
+use aerobot_systems::integration::{Equations, StepFailure};
 use bevy_ecs::resource::Resource;
 use bevy_ecs::world::World;
 
 use crate::builtin::recorder::bind_rows;
 use crate::coordinates::Coordinates;
 use crate::evaluation::{Integration, WorldEquations};
+use crate::integrator_choice::is_linearised;
 use crate::scene::{Scene, SetupError};
 use crate::world::lay_out_state;
 
@@ -49,7 +50,8 @@ pub(crate) fn restructure(
     Ok(())
 }
 
-/// Evaluates the state as it is now, so that what is recorded belongs to it.
+/// Evaluates the state as it is now, so that what is recorded belongs to it, and linearises the motion there:
+/// explicit steps, too, measure their errors with the places that this finds.
 ///
 /// # Errors
 /// It cannot be evaluated.
@@ -65,12 +67,18 @@ pub(crate) fn evaluate(
         ..
     } = integration;
     trajectory.rates_are_current = false;
-    trajectory.refresh(&mut WorldEquations {
+    let asks = is_linearised(&world.resource::<SceneOfWorld>().0.run.integrator);
+    let mut equations = WorldEquations {
         world,
         evaluation,
         state: &mut **state,
         implicit,
-    })
+    };
+    trajectory.refresh(&mut equations)?;
+    if asks {
+        equations.linearise();
+    }
+    Ok(())
 }
 
 #[cfg(test)]
