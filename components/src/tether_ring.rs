@@ -71,10 +71,12 @@ fn slackens() -> bool {
 pub const MOST_TETHERS: u32 = 1000;
 
 impl Tethers {
-    /// The tethers of the ring, in order.
+    /// The tethers of the ring, in order; of a ring that has too many, those that one may have.
     #[must_use]
     pub fn members(&self) -> Vec<Tether> {
-        (1..=self.count).map(|number| self.member(number)).collect()
+        (1..=self.count.min(MOST_TETHERS))
+            .map(|number| self.member(number))
+            .collect()
     }
 
     /// Tether `number`, from 1.

@@ -36,7 +36,7 @@ pub(crate) fn step(
     }
     let mut bisect = false;
     while end_s - start.time_s > RESOLUTION_S {
-        let part = if bisect {
+        let part = if bisect || !(before.is_finite() && after.is_finite()) {
             0.5
         } else {
             (before / (before - after)).clamp(0.01, 0.99)

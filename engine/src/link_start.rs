@@ -1,9 +1,11 @@
 //! How a tree of rigid links starts from a scene that was written for tethers: where the poses and
 //! motions of a scene stretch them, bodies start where, and as fast as, the links let them.
 
-use aerobot_components::segment::RigidLink;
+use aerobot_components::segment::{RigidLink, Segment, SegmentGeometry};
 use aerobot_components::state::{Attitude, Position, StateIndex, Velocity};
 use aerobot_components::tether::{Attachment, Tether, TetherNode, TetherParts, TetherStart};
+use aerobot_systems::denoc::articulated_link::Stretch;
+use aerobot_systems::dynamics::link_mechanism::LinkMechanism;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::query::{With, Without};
 use bevy_ecs::world::World;
@@ -15,6 +17,10 @@ use crate::world::{EntityName, Warnings};
 /// The ends of a tether may be moved against one another by this part of its length: about what tethers
 /// stretch at most.
 const LARGEST_SHIFT: f64 = 0.02;
+/// Rigid links that close loops are right within this part of their length.
+const LARGEST_STRAIN: f64 = 1e-6;
+/// Links that lean less than this against each other are on one line, rad.
+const LEAST_BEND: f64 = 1e-3;
 /// Shifts of which nobody is told, m.
 const NO_SHIFT_M: f64 = 1e-5;
 /// Changes of velocity of which nobody is told, m/s.
@@ -52,6 +58,7 @@ impl Start {
         if self.tethers.is_empty() {
             return Ok(());
         }
+        check_loops(world)?;
         for ((entity, was_m, was_m_s), (_, is_m, is_m_s)) in self.bodies.iter().zip(bodies(world)) {
             let name = name(world, *entity);
             let (shift_m, speed_m_s) = (was_m.distance(is_m), was_m_s.distance(is_m_s));
@@ -71,6 +78,50 @@ impl Start {
         }
         Ok(())
     }
+}
+
+/// Tethers that close loops must reach, and must have a direction in which they can give way.
+fn check_loops(world: &World) -> Result<(), SetupError> {
+    let Some(mechanism) = world.get_resource::<LinkMechanism>() else {
+        return Ok(());
+    };
+    for closure in &mechanism.tree.closures {
+        let (limb, kind) = (
+            &mechanism.tree.limbs[closure.limb],
+            &mechanism.tree.kinds[closure.limb],
+        );
+        let segments = &mechanism.entities.segments[limb.links.clone()];
+        if kind.stretch == Stretch::Elastic {
+            continue;
+        }
+        let (mut stretch_m, mut tether) = (0.0_f64, None);
+        for segment in segments {
+            if let (Some(geometry), Some(segment)) = (
+                world.get::<SegmentGeometry>(*segment),
+                world.get::<Segment>(*segment),
+            ) {
+                stretch_m = stretch_m.max((geometry.length_m - kind.length_m).abs());
+                tether = Some(segment.tether);
+            }
+        }
+        let Some(tether) = tether else { continue };
+        if stretch_m > LARGEST_STRAIN * kind.length_m {
+            return Err(out_of_reach(world, tether, stretch_m));
+        }
+        let spans = &mechanism.links.span_m[limb.links.clone()];
+        let first = spans[0];
+        let across = |span: &DVec3| span.cross(first).length() / first.length_squared();
+        let is_folded = spans.iter().any(|span| span.dot(first) < 0.0);
+        if is_folded && spans.iter().all(|span| across(span) < LEAST_BEND) {
+            let name = name(world, tether);
+            return Err(SetupError::new(
+                format!("entities.{name}"),
+                format!("the rigid links of `{name}` are folded along one line"),
+                "a slack tether beside a taut one needs `LumpedMass`, or `run.elastic_links: true`",
+            ));
+        }
+    }
+    Ok(())
 }
 
 fn out_of_reach(world: &World, tether: Entity, shift_m: f64) -> SetupError {

@@ -7,7 +7,7 @@ use aerobot_components::state::{Inertia, Mass};
 use aerobot_components::tether::{Attachment, Tether, TetherParts};
 use aerobot_systems::denoc::articulated_link::Stretch;
 use aerobot_systems::denoc::kinematics::LimbOffsets;
-use aerobot_systems::denoc::tree::{KinematicTree, LinkKind, Piece};
+use aerobot_systems::denoc::tree::{KinematicTree, Limb, LinkKind, Piece};
 use aerobot_systems::dynamics::link_mechanism::{LinkMechanism, LooseNode, TreeEntities};
 use aerobot_systems::dynamics::rigid_body::CarriedMass;
 use aerobot_systems::linearised_motion::topology::End;
@@ -48,7 +48,12 @@ pub(crate) fn build(world: &World, scene: &Scene, found: &WorldTopology) -> Link
         ..TreeEntities::default()
     };
     find_ends(world, found, &tree, &mut entities);
-    lend_to_tips(world, &tree, &mut entities);
+    let half_link_kg = |limb: &Limb| {
+        let tether = world.get::<Tether>(found.tethers[limb.line]);
+        tether.map_or(0.0, |tether| tether.end_mass_kg(lumping(scene, tether)))
+    };
+    let half_links_kg: Vec<f64> = tree.limbs.iter().map(half_link_kg).collect();
+    lend_to_tips(world, &tree, &half_links_kg, &mut entities);
     LinkMechanism::new(tree, entities)
 }
 
@@ -210,11 +215,18 @@ fn find_ends(
 }
 
 /// Takes the masses of tips from the bodies that they are tied to: so little that enough is left there.
-fn lend_to_tips(world: &World, tree: &KinematicTree, entities: &mut TreeEntities) {
+fn lend_to_tips(
+    world: &World,
+    tree: &KinematicTree,
+    half_links_kg: &[f64],
+    entities: &mut TreeEntities,
+) {
     entities.lent = vec![CarriedMass::default(); entities.bodies.len()];
     for (index, closure) in tree.closures.iter().enumerate() {
         let Some(body) = closure.onto else {
-            entities.tips_kg.push(AT_ANCHOR_KG);
+            entities
+                .tips_kg
+                .push(AT_ANCHOR_KG + half_links_kg[closure.limb]);
             continue;
         };
         let tied = tree
@@ -229,6 +241,8 @@ fn lend_to_tips(world: &World, tree: &KinematicTree, entities: &mut TreeEntities
             let least = smallest_moment_kg_m2(inertia);
             kg = kg.min(part * least / offset_m.length_squared());
         }
+        // The half link that the body carries there goes with the tip: a rod is positive with both halves only.
+        kg += half_links_kg[closure.limb];
         entities.tips_kg.push(kg);
         entities.lent[body].add(-kg, offset_m);
     }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use aerobot_components::body::{Body, Fixed, Moving};
 use aerobot_components::scene_component::FieldReport;
-use aerobot_components::segment::{RigidLink, Segment, Tension};
+use aerobot_components::segment::{RigidLink, Segment, SegmentGeometry, Tension};
 use aerobot_components::state::Mass;
 use aerobot_components::tether::Tether;
 use aerobot_systems::clock::Clock;
@@ -38,7 +38,9 @@ impl Plugin for LinksPlugin {
             .add_systems_in(Phase::Dynamics, has_links, || {
                 (solve_links, accelerate_by_links, add_reactions).chain()
             })
-            .add_systems_in(Phase::Observe, has_rigid_links, || log_compression);
+            .add_systems_in(Phase::Observe, has_rigid_links, || {
+                (log_compression, log_strain).chain()
+            });
     }
 }
 
@@ -123,6 +125,36 @@ fn check_base(scene: &Scene, report: &mut FieldReport) {
             format!("an anchor holds the system of `{name}`, and its tree grows from there"),
             "leave out `base`",
         );
+    }
+}
+
+/// Rigid links are stretched by loops that cannot stay closed: more than this part of their length is told.
+const STRAINED: f64 = 1e-5;
+
+/// Logs when redundant tethers first cannot all keep their lengths.
+fn log_strain(
+    clock: Res<Clock>,
+    mut events: ResMut<EventLog>,
+    mut warnings: ResMut<Warnings>,
+    links: Query<(&Segment, &SegmentGeometry), With<RigidLink>>,
+    tethers: Query<(&Tether, &EntityName)>,
+    mut seen: Local<BTreeSet<Entity>>,
+) {
+    for (segment, geometry) in &links {
+        let Ok((tether, name)) = tethers.get(segment.tether) else {
+            continue;
+        };
+        let length_m = tether.segment_length_m();
+        let stretch_m = geometry.length_m - length_m;
+        if stretch_m.abs() > STRAINED * length_m && seen.insert(segment.tether) {
+            let part = format!("{}/{}", name.0, segment.number);
+            events.add(clock.time_s, "strained", &part);
+            warnings.0.push(format!(
+                "the rigid link `{part}` is {stretch_m:.6} m too long at {} s: redundant tethers cannot all keep \
+                 their lengths in this motion; `run.elastic_links: true` or `LumpedMass` lets them stretch",
+                clock.time_s
+            ));
+        }
     }
 }
 

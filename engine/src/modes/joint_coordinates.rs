@@ -105,6 +105,15 @@ impl JointBasis {
         self.redundant > 0
     }
 
+    /// The directions, whether they keep loops closed or not.
+    fn directions_alone(&self) -> Self {
+        Self {
+            directions: self.directions.clone(),
+            combinations: None,
+            redundant: 0,
+        }
+    }
+
     /// Number of columns of Z.
     pub(super) fn len(&self) -> usize {
         match &self.combinations {
@@ -138,18 +147,6 @@ impl JointBasis {
                 for (direction, part) in self.directions.iter().zip(&combinations[k]) {
                     direction.move_along(by * part, coordinates);
                 }
-            }
-        }
-    }
-
-    /// Largest step of differences along a column of Z.
-    fn step(&self, k: usize) -> f64 {
-        match &self.combinations {
-            None => self.directions[k].step,
-            Some(combinations) => {
-                let parts = self.directions.iter().zip(&combinations[k]);
-                let steps = parts.map(|(direction, part)| direction.step / part.abs().max(1e-3));
-                steps.fold(f64::INFINITY, f64::min)
             }
         }
     }
@@ -224,6 +221,9 @@ impl JointWorld<'_> {
         &mut self,
         basis: &JointBasis,
     ) -> Result<(LinearMotion, Vec<Entity>), Fault> {
+        // Differences are taken direction by direction, each with the step that fits it, and then combined: off
+        // the motions that keep loops closed accelerations are as smooth as on them.
+        let (combinations, basis) = (&basis.combinations, &basis.directions_alone());
         let n = basis.len();
         let first_order = first_order_states(self.world);
         let (m, coordinates) = (first_order.len(), self.state.layout().coordinates);
@@ -231,7 +231,7 @@ impl JointWorld<'_> {
         motion.mass.fill_diagonal(1.0);
         let mut column = vec![0.0; n + m];
         for k in 0..n {
-            let steps = [basis.step(k), VELOCITY_STEP];
+            let steps = [basis.directions[k].step, VELOCITY_STEP];
             for (part, step) in steps.into_iter().enumerate() {
                 column.fill(0.0);
                 differentiate(&mut column, step, |h, out| {
@@ -268,6 +268,9 @@ impl JointWorld<'_> {
             for row in 0..m {
                 motion.first_order[(row, k)] = column[n + row];
             }
+        }
+        if let Some(combinations) = combinations {
+            motion = motion.along(combinations);
         }
         let (motion, kept) = motion.without_idle_first_order();
         let kept = kept.into_iter().map(|k| first_order[k].0).collect();

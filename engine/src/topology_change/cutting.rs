@@ -1,12 +1,13 @@
 //! Cutting a segment. The masses of a segment are lumped in halves at its two ends, so a cut takes its force
 //! away and nothing else: positions, velocities and masses stay, and with them momentum and angular momentum;
-//! the energy of its stretch is lost.
+//! the energy of its stretch, and of the twist of the line, is lost.
 
 use aerobot_components::derivatives::SegmentDerivatives;
 use aerobot_components::segment::{
     KelvinVoigt, RigidLink, SegmentDrag, SegmentLoad, Severed, Tension,
 };
 use aerobot_components::tether::{Attachment, TetherParts};
+use aerobot_components::torsion::{AcceptedTwist, Torsion, Twist};
 use aerobot_components::winch::Reeled;
 use aerobot_systems::clock::Clock;
 use aerobot_systems::instruments::swing::Support;
@@ -77,6 +78,13 @@ fn sever(world: &mut World, tether: Entity, number: u32, segment: Entity) {
             SegmentLoad::default(),
             SegmentDerivatives::default(),
         ));
+    // A line in two pieces passes on no torque.
+    world
+        .entity_mut(tether)
+        .remove::<(Torsion, AcceptedTwist)>();
+    if let Some(mut twist) = world.get_mut::<Twist>(tether) {
+        *twist = Twist::default();
+    }
     let_go(world, tether);
     log(world, "cut", tether, Some(number));
 }

@@ -3,6 +3,7 @@
 
 use aerobot_components::segment::Segment;
 use aerobot_components::tether::{TetherNode, TetherParts, TetherPoint};
+use aerobot_components::torsion::Torsion;
 use aerobot_systems::dynamics::segments::PointArrays;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
@@ -66,6 +67,9 @@ pub(super) fn renumber(world: &mut World) {
                 number: place as u32 + 1,
                 from_point: points + place,
             });
+        }
+        if let Some(mut torsion) = world.get_mut::<Torsion>(tether) {
+            torsion.points = points..points + parts.points.len();
         }
         points += parts.points.len();
     }

@@ -44,6 +44,25 @@ impl DenseMotion {
         }
     }
 
+    /// The same motion along orthonormal directions alone, each by its parts along the coordinates.
+    #[must_use]
+    pub fn along(&self, directions: &[Vec<f64>]) -> Self {
+        let n = self.mass.nrows();
+        let z = DMatrix::from_fn(n, directions.len(), |row, column| directions[column][row]);
+        let between = |m: &DMatrix<f64>| z.tr_mul(&(m * &z));
+        Self {
+            mass: between(&self.mass),
+            damping: between(&self.damping),
+            stiffness: between(&self.stiffness),
+            by_first_order: z.tr_mul(&self.by_first_order),
+            first_order_by_displacement: &self.first_order_by_displacement * &z,
+            first_order_by_velocity: &self.first_order_by_velocity * &z,
+            first_order: self.first_order.clone(),
+            shift: 0.0,
+            factors: None,
+        }
+    }
+
     /// The same as a motion in blocks, with so many first-order states that do nothing yet.
     #[must_use]
     pub fn of(sparse: &SparseMotion, first_order: usize) -> Self {
