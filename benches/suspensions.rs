@@ -72,6 +72,7 @@ fn graphs() {
             "entities.tether.Tether.nodes=400".to_owned(),
             "environment.wind=[Step(velocity_m_s: (5, 0, 0), from_s: 5, until_s: 10)]".to_owned(),
             "run.duration_s=30".to_owned(),
+            "run.integrator=Auto()".to_owned(),
         ],
     };
     let cases = [

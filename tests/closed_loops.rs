@@ -177,3 +177,33 @@ fn elastic_loops_are_lumped_masses() {
     let elastic = of(&[POINT_MASSES, "run.elastic_links=true"]);
     assert_below("elastic", largest_distance_m(&elastic, &lumped), 1e-8);
 }
+
+/// A slender body on few heavy rods, whose own mass is small beside what the tips need, and a confluence that
+/// weighs less than the rods that meet there.
+#[test]
+fn light_bodies_close_heavy_loops() {
+    for nodes in [0, 1, 3] {
+        let text = format!(
+            r#"(
+    name: "slender", environment: (gravity: Constant(8.87), atmosphere: Vacuum),
+    entities: {{
+        "anchor": (Fixed: (position_m: (0, 0, 100))),
+        "body": (
+            Body: (mass_kg: 10, inertia: SolidCylinder(radius_m: 0.05, height_m: 1.5)),
+            Motion: (rate_rad_s: (0.1, 0, 0)),
+        ),
+        "ring": (Tethers: (
+            count: 3, from_radius_m: 1, to_radius_m: 0.05, from: ("anchor", Centre), to: ("body", Top),
+            length_m: 30, nodes: {nodes}, diameter_m: 0.004, density_kg_m3: 1440, axial_stiffness_n: 5e5,
+        )),
+    }},
+    run: (formulation: Denoc, duration_s: 3, output_every_s: 0.5),
+)"#
+        );
+        let results = fly(&text, &[]);
+        let length_m = 30.0 / (f64::from(nodes) + 1.0);
+        let segments = results.frames.iter().flat_map(|frame| &frame.segments);
+        let worst = segments.map(|row| (row.length_m - length_m).abs());
+        assert_below("lengths", worst.fold(0.0, f64::max), 1e-8);
+    }
+}

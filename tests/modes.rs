@@ -307,3 +307,33 @@ fn both_formulations_agree() {
     }
     assert_eq!(lumped.neutral, rigid.neutral);
 }
+
+/// Loops of rigid links move only as they stay closed: the paper's rings have the modes of stiff lumped
+/// tethers, and nothing grows.
+#[test]
+fn closed_loops_of_rigid_links_have_the_modes_of_stiff_tethers() {
+    for (scene, ring) in [
+        ("paper/mojave_test.ron", "suspension"),
+        ("paper/multi_tether.ron", "suspension"),
+        ("paper/multi_tether_yaw.ron", "suspension"),
+    ] {
+        let field = |name: &str| format!("entities.{ring}.Tethers.{name}");
+        let stiffness = field("axial_stiffness_n=2e6");
+        let lumping = field("lumping=Interior");
+        let modes = |more: &[&str]| {
+            let mut overrides = vec!["run.links=PointMass", lumping.as_str()];
+            if scene != "paper/multi_tether_yaw.ron" {
+                overrides.push("environment.wind=[]");
+            }
+            overrides.extend(more);
+            modes_of_scene(scene, &overrides, ModeSolver::Automatic)
+        };
+        let rigid = modes(&["run.formulation=Denoc"]);
+        let stiff = modes(&["run.formulation=LumpedMass", &stiffness]);
+        for k in 0..3 {
+            let rate = |found: &Modes| found.modes[k].rate_per_s();
+            assert_relative(scene, rate(&rigid), rate(&stiff), 1e-4);
+            assert!(!rigid.modes[k].is_unstable(), "{scene}, mode {k}");
+        }
+    }
+}

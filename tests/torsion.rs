@@ -510,3 +510,59 @@ fn a_trimmed_scene_keeps_its_twist() {
         assert_below(name, error, 1e-6);
     }
 }
+
+/// A line that has been cut passes on no torque, and a winch elsewhere that numbers points anew changes nothing:
+/// the body keeps the spin it had, or swings in its own line's torsion alone.
+#[test]
+fn torsion_ends_with_a_cut_and_survives_a_winch() {
+    let scene = |more: &str, events: &str| {
+        format!(
+            r#"(
+    name: "spun", environment: (gravity: Constant(8.87), atmosphere: Vacuum),
+    entities: {{
+        "anchor": (Fixed: (position_m: (0, 0, 100))),
+        {more}
+        "body": (
+            Body: (mass_kg: 20, inertia: SolidSphere), Sphere: (radius_m: 0.5), Motion: (rate_rad_s: (0, 0, 1)),
+        ),
+        "line": (Tether: (
+            from: ("anchor", Centre), to: ("body", Top), length_m: 10, nodes: 5, diameter_m: 0.002,
+            density_kg_m3: 1440, axial_stiffness_n: 5e4, damping_n_s_m: 1, torsion: (stiffness_n_m2: 5),
+        )),
+    }},
+    events: [{events}],
+    run: (duration_s: 6, output_every_s: 1, integrator: Adaptive()),
+)"#
+        )
+    };
+    let spins = |text: &str, more: &[&str]| -> Vec<f64> {
+        let results = fly(text, more);
+        let rows = results.frames.iter().map(|frame| {
+            let row = frame.states.iter().find(|row| &*row.entity == "body");
+            row.unwrap().rotation.unwrap().1.z
+        });
+        rows.collect()
+    };
+    let cut = scene("", r#"(at_s: 2, do: Cut(tether: "line", segment: 6))"#);
+    for formulation in ["run.formulation=LumpedMass", "run.formulation=Denoc"] {
+        let found = spins(&cut, &[formulation]);
+        for spin in &found[2..] {
+            assert_below("spin after the cut", (spin - found[2]).abs(), 1e-9);
+        }
+    }
+    let winch = r#""load": (Body: (mass_kg: 20)), "winch": (
+        Tether: (
+            from: ("anchor", (-5, 0, 0)), to: ("load", Centre), length_m: 10, nodes: 5, diameter_m: 0.002,
+            density_kg_m3: 1440, axial_stiffness_n: 5e4, damping_n_s_m: 1,
+        ),
+        Winch: (stored_m: 20),
+    ),"#;
+    let reeled = scene(
+        winch,
+        r#"(at_s: 1, do: Reel(tether: "winch", rate_m_s: 1, length_m: 8))"#,
+    );
+    let (with, without) = (spins(&reeled, &[]), spins(&scene("", ""), &[]));
+    for (with, without) in with.iter().zip(&without) {
+        assert_below("spin beside a winch", (with - without).abs(), 1e-6);
+    }
+}

@@ -44,6 +44,16 @@ fn check(scene: &Scene, report: &mut FieldReport) {
                 "use `LumpedMass` (`--formulation lumped-mass`), or leave the `Winch` out",
             );
         }
+        if entity
+            .get::<Tether>()
+            .is_some_and(|tether| tether.torsion.is_some())
+        {
+            report.add(
+                &path,
+                "a tether with `torsion` has no winch: its stiffness is that of one length",
+                "leave out the `torsion` or the `Winch`",
+            );
+        }
         let is_interior = |tether: &Tether| tether.lumping == Lumping::Interior;
         if entity.get::<Tether>().is_some_and(is_interior) {
             report.add(

@@ -27,6 +27,8 @@ use crate::evaluation::Evaluation;
 
 /// Largest step of displacements, m and rad, as a part of a link's length for a link.
 const STEP: f64 = 0.007_812_5;
+/// Steps are shorter by this where loops are closed.
+const IN_LOOPS: f64 = 1.0 / 16.0;
 /// Largest step of velocities, m/s and rad/s.
 const VELOCITY_STEP: f64 = 1.0 / 4096.0;
 
@@ -184,6 +186,10 @@ impl JointWorld<'_> {
             .is_empty()
         {
             return Ok(basis);
+        }
+        // Columns of single directions are stiff, and cancel in a slow motion: their truncation must too.
+        for direction in &mut basis.directions {
+            direction.step *= IN_LOOPS;
         }
         // The gaps of tips change linearly with velocities: a row of constraints for each of their parts.
         let steady = self.gap_rates(&basis, None)?;

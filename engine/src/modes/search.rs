@@ -32,7 +32,7 @@ const MOST: usize = 2400;
 /// Modes this much slower than a pendulum of all tethers in a row, which belong to what nothing restores.
 const STANDSTILL: f64 = 0.02;
 /// Modes this much slower are round-off.
-const NOTHING: f64 = 1e-6;
+const NOTHING: f64 = 5e-4;
 /// Modes that are found besides, in place of such round-off.
 const SPARE: usize = 8;
 /// Relative difference of eigenvalues that count as equal.
