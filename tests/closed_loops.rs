@@ -3,7 +3,8 @@
 
 #![allow(
     clippy::unwrap_used,
-    reason = "a test stops at what it does not expect"
+    clippy::panic,
+    reason = "a test fails by panicking"
 )]
 
 mod flight;

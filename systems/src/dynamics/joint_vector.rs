@@ -7,7 +7,7 @@
 //!
 //! Read from components that the joints do not allow (a scene whose poses stretch a tether, a velocity that
 //! a plugin has set), links keep their directions, what nothing holds keeps its centre of mass, and momentum
-//! is conserved ([`crate::denoc::impulse`]). Closed loops are kept closed ([`closing`]).
+//! is conserved ([`crate::denoc::impulse`]). Closed loops are kept closed (`closing.rs`).
 
 mod closing;
 
