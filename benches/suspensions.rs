@@ -3,7 +3,7 @@
 //! A body on a ring of three tethers with ten masses each, in yaw (the case of
 //! `scenes/paper/multi_tether_yaw.ron`): CPU time of a simulated second, and the error of the frequency of its
 //! yaw against a run with an accuracy of 1e-5 m. Eight bodies on twelve tethers with 400 nodes
-//! (`scenes/examples/twelve_tethers.ron`) beside a single chain of 400 nodes in the same gust: CPU time for each
+//! (`scenes/examples/twelve_tethers.ron`) beside a single chain of 400 nodes in the same air and gust: CPU time for each
 //! node and simulated second, and for each node and step. One core, release build; the least of five repeats,
 //! cases interleaved.
 
@@ -64,16 +64,20 @@ fn graphs() {
         scene: "examples/twelve_tethers.ron",
         set: vec![format!("run.formulation={formulation}")],
     };
-    let chain = |name, formulation| Case {
+    let chain = |name, formulation| {
+        Case {
         name,
         scene: "paper/comparison_900m.ron",
         set: vec![
             format!("run.formulation={formulation}"),
             "entities.tether.Tether.nodes=400".to_owned(),
             "environment.wind=[Step(velocity_m_s: (5, 0, 0), from_s: 5, until_s: 10)]".to_owned(),
+            "environment.atmosphere=Exponential(density_kg_m3: 0.8183, altitude_m: 56_000, scale_height_m: 8200)"
+                .to_owned(),
             "run.duration_s=30".to_owned(),
             "run.integrator=Auto()".to_owned(),
         ],
+    }
     };
     let cases = [
         chain("one tether, lumped masses", "LumpedMass"),

@@ -42,6 +42,7 @@ impl Coordinates {
                     .map(|loose| loose.point)
                     .collect(),
                 tips_kg: mechanism.entities.tips_kg.clone(),
+                elasticity: mechanism.entities.elasticity.clone(),
             };
             world.insert_resource(mechanism);
             let state = JointVector::new(world, layout.first_order);

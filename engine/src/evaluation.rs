@@ -8,7 +8,7 @@ use aerobot_systems::dynamics::state_space::StateSpace;
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::fault::{Fault, FaultSlot};
 use aerobot_systems::integration::{
-    Equations, Integrator, MechanicalEnergy, StepFailure, Trajectory,
+    Correction, Equations, Integrator, MechanicalEnergy, StepFailure, Trajectory,
 };
 use bevy_ecs::resource::Resource;
 use bevy_ecs::system::SystemId;
@@ -66,7 +66,7 @@ impl Equations for WorldEquations<'_> {
         Ok(())
     }
 
-    fn accept(&mut self, state: &mut [f64], rates: &mut [f64]) -> bool {
+    fn accept(&mut self, state: &mut [f64], rates: &mut [f64]) -> Correction {
         self.state.recentre(self.world, state, rates)
     }
 
@@ -209,13 +209,18 @@ fn advance(world: &mut World, integration: &mut Integration) -> Result<(), StepF
         event_location::step(&mut **integrator, &mut equations, trajectory, *limit_s)?;
         begin_interval(world, trajectory);
     }
-    // On an edge the accepted state is seen with what holds from the edge on.
-    trajectory.refresh(&mut WorldEquations {
+    let mut equations = WorldEquations {
         world,
         evaluation,
         state,
         implicit,
-    })
+    };
+    // On an edge the accepted state is seen with what holds from the edge on.
+    if trajectory.time_s < *limit_s {
+        trajectory.refresh(&mut equations)
+    } else {
+        trajectory.look(&mut equations)
+    }
 }
 
 /// Enters the interval that starts at the present, if the present is an edge.

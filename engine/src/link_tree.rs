@@ -7,6 +7,7 @@ use aerobot_components::state::{Inertia, Mass};
 use aerobot_components::tether::{Attachment, Tether, TetherParts};
 use aerobot_systems::denoc::articulated_link::Stretch;
 use aerobot_systems::denoc::kinematics::LimbOffsets;
+use aerobot_systems::denoc::loops::LimbElasticity;
 use aerobot_systems::denoc::tree::{KinematicTree, Limb, LinkKind, Piece};
 use aerobot_systems::dynamics::link_mechanism::{LinkMechanism, LooseNode, TreeEntities};
 use aerobot_systems::dynamics::rigid_body::CarriedMass;
@@ -207,10 +208,16 @@ fn find_ends(
         }
         entities.offsets.limbs.push(offsets);
         entities.anchors.push(anchor);
-        let compliance = world
-            .get::<Tether>(tether)
-            .map_or(0.0, |tether| tether.length_m / tether.axial_stiffness_n);
-        entities.compliance_m_n.push(compliance);
+        let elasticity = |tether: &Tether| LimbElasticity {
+            compliance_m_n: tether.length_m / tether.axial_stiffness_n,
+            retardation_s: tether.damping_n_s_m * tether.length_m / tether.axial_stiffness_n,
+        };
+        let rigid = LimbElasticity {
+            compliance_m_n: 0.0,
+            retardation_s: 0.0,
+        };
+        let own = world.get::<Tether>(tether).map_or(rigid, elasticity);
+        entities.elasticity.push(own);
     }
 }
 

@@ -60,6 +60,19 @@ pub struct BodyBias {
     pub passed_on: DVec3,
 }
 
+impl BodyBias {
+    /// Of both loads together.
+    #[inline]
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        Self {
+            torque: self.torque + other.torque,
+            centripetal: self.centripetal + other.centripetal,
+            passed_on: self.passed_on + other.passed_on,
+        }
+    }
+}
+
 impl ArticulatedBody {
     /// Eliminates the turning of a body with this `block`, carried at `place`; a body that does not turn
     /// is a point. With what it passes on.
@@ -90,6 +103,7 @@ impl ArticulatedBody {
     }
 
     /// The sweep inward: `bias` is [b1; b2], `centripetal` c.
+    #[inline]
     #[must_use]
     pub fn inward(&self, bias: Twist, centripetal: DVec3) -> BodyBias {
         let at_joint = bias.angular
@@ -104,6 +118,7 @@ impl ArticulatedBody {
     }
 
     /// The sweep outward: how the body accelerates where its joint accelerates by `joint`.
+    #[inline]
     #[must_use]
     pub fn outward(&self, bias: &BodyBias, joint: DVec3) -> Twist {
         let angular = self.turning * (self.torque_by_joint * joint + bias.torque);

@@ -145,6 +145,19 @@ pub struct LinkBias {
     pub passed_on: DVec3,
 }
 
+impl LinkBias {
+    /// Of both loads together.
+    #[inline]
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        Self {
+            distal: self.distal + other.distal,
+            tension: self.tension + other.tension,
+            passed_on: self.passed_on + other.passed_on,
+        }
+    }
+}
+
 impl<E: Coupling> ArticulatedLink<E> {
     /// Eliminates what is carried: `carried` is B without the link's own E, `direction` e. With A_P, and
     /// whether B is positive definite.
@@ -216,6 +229,7 @@ impl<E: Coupling> ArticulatedLink<E> {
 
     /// How Q follows P where nothing else pushes: F in a_Q = F a_P + W f, f a force at Q; F' f is what the
     /// link passes on of it.
+    #[inline]
     #[must_use]
     pub fn follows(&self) -> DMat3 {
         let column = |v: DVec3| {
@@ -226,6 +240,7 @@ impl<E: Coupling> ArticulatedLink<E> {
     }
 
     /// How Q yields to a force on it while P is held: W.
+    #[inline]
     #[must_use]
     pub fn yields(&self) -> Symmetric3 {
         let pulled = Symmetric3::along(self.across, self.stiffness, 0.0);

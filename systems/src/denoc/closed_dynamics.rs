@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::articulated_link::Stretch;
 use super::forward_dynamics::{Accelerations, ForwardDynamics, Loads, Massless};
 use super::kinematics::{BodyState, LimbOffsets, LinkStates};
-use super::loops::Loops;
+use super::loops::{LimbElasticity, LoopGeometry, Loops, Told};
 use super::tree::KinematicTree;
 use crate::linearised_motion::body_block::{Place, Twist};
 
@@ -18,25 +18,38 @@ pub struct Offsets {
     pub ties_m: Vec<DVec3>,
 }
 
+/// Where everything is in an evaluation, and how it moves.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion<'a> {
+    /// Of the links.
+    pub links: &'a LinkStates,
+    /// Of bodies, loose nodes and tips.
+    pub bodies: &'a [BodyState],
+    /// Of each closure that has one, its anchor; empty where forces are not to answer for gaps that are open.
+    pub ties: &'a [BodyState],
+}
+
 /// The recursion with its loops.
 #[derive(Clone, Debug, Default)]
 pub struct ClosedDynamics {
     tree: ForwardDynamics,
     loops: Loops,
+    /// Accelerations by which tips leave their places without the multipliers, m/s^2.
     gaps: Vec<DVec3>,
-    holds: Vec<DVec3>,
+    /// How far they have left them (m), and how fast they do (m/s).
+    open: Vec<[DVec3; 2]>,
     loads: Vec<Twist>,
 }
 
 impl ClosedDynamics {
-    /// Scratch for a tree whose limbs have these compliances (m/N, up to a common factor).
+    /// Scratch for a tree with these limbs.
     #[must_use]
-    pub fn new(tree: &KinematicTree, compliance: Vec<f64>) -> Self {
+    pub fn new(tree: &KinematicTree, elasticity: Vec<LimbElasticity>) -> Self {
         Self {
             tree: ForwardDynamics::new(tree),
-            loops: Loops::new(tree, compliance),
+            loops: Loops::new(tree, elasticity),
             gaps: vec![DVec3::ZERO; tree.closures.len()],
-            holds: Vec::new(),
+            open: vec![[DVec3::ZERO; 2]; tree.closures.len()],
             loads: vec![Twist::default(); tree.carried_by.len()],
         }
     }
@@ -48,39 +61,61 @@ impl ClosedDynamics {
     pub fn solve(
         &mut self,
         tree: &KinematicTree,
-        states: (&LinkStates, &[BodyState]),
+        motion: Motion<'_>,
         offsets: &Offsets,
         loads: &Loads,
         out: &mut Accelerations,
     ) -> Result<(), Massless> {
-        self.tree.solve(tree, states, &offsets.limbs, loads, out)?;
-        if tree.closures.is_empty() {
-            return Ok(());
+        let Motion { links, bodies, .. } = motion;
+        self.tree
+            .sweep_inward(tree, (links, bodies), &offsets.limbs, loads, out)?;
+        if !tree.closures.is_empty() {
+            let geometry = Standing {
+                tree,
+                motion,
+                offsets,
+                dynamics: &self.tree,
+            };
+            let factors = self.tree.factors();
+            self.loops.factorise(tree, &factors, &geometry, None);
+            self.load_tips(tree, motion, offsets, loads, &out.bodies);
+            self.tree.sweep_more_inward(tree, &mut self.loads, out);
         }
-        let bodies = states.1;
-        self.loops.factorise(
-            tree,
-            &self.tree.factors(),
-            |limb| self.tree.proximal(limb),
-            |closure, body| Place::new(bodies[body].attitude, offsets.ties_m[closure]),
-            |limb| self.tree.distal(limb),
-            |limb| chord(tree, states.0, limb),
-        );
+        self.tree.sweep_outward(tree, loads, out);
+        Ok(())
+    }
+
+    /// Finds the multipliers, and leaves them as loads; `bases` hold the accelerations of bases without them.
+    fn load_tips(
+        &mut self,
+        tree: &KinematicTree,
+        motion: Motion<'_>,
+        offsets: &Offsets,
+        loads: &Loads,
+        bases: &[Twist],
+    ) {
+        let dynamics = &self.tree;
+        self.loops
+            .drift(tree, bases, dynamics.body_biases(), |limb| {
+                dynamics.centripetal(tree, limb, loads)
+            });
         for (index, closure) in tree.closures.iter().enumerate() {
             let besides = match closure.onto {
                 Some(body) => {
-                    let (rate, offset_m) = (bodies[body].rate_rad_s, offsets.ties_m[index]);
-                    bodies[body].attitude * rate.cross(rate.cross(offset_m))
+                    let rate = motion.bodies[body].rate_rad_s;
+                    motion.bodies[body].attitude * rate.cross(rate.cross(offsets.ties_m[index]))
                 }
                 None => loads.tie_m_s2[index],
             };
-            self.gaps[index] = self.loops.gap(index, &out.bodies) - besides;
+            self.gaps[index] = self.loops.drifting_gap(index) - besides;
         }
-        self.tree.holds(tree, out, &mut self.holds);
-        self.loops.close(&self.gaps, Some(&self.holds));
+        if motion.ties.is_empty() {
+            self.open.fill([DVec3::ZERO; 2]);
+        } else {
+            self.open = gaps(tree, motion.bodies, motion.ties, offsets);
+        }
+        self.loops.close(&self.gaps, Told::Forces(&self.open));
         self.loops.add_loads(&mut self.loads);
-        self.tree.respond(tree, &mut self.loads, out);
-        Ok(())
     }
 
     /// Takes from gaps of tips what the lengths of redundant tethers say twice, as far as the last solution tells.
@@ -97,19 +132,41 @@ impl ClosedDynamics {
         gaps: &[DVec3],
         out: &mut Accelerations,
     ) {
-        out.clear();
-        self.loops.close(gaps, None);
+        self.loops.close(gaps, Told::Nothing);
         self.loops.add_loads(&mut self.loads);
         self.tree.respond(tree, &mut self.loads, out);
     }
 }
 
-/// The chord of a limb, its length (m) and whether it is rigid.
-fn chord(tree: &KinematicTree, links: &LinkStates, limb: usize) -> (DVec3, f64, bool) {
-    let (own, kind) = (tree.limbs[limb].links.clone(), &tree.kinds[limb]);
-    let length_m = kind.length_m * own.len() as f64;
-    let is_rigid = kind.stretch == Stretch::Rigid;
-    (links.span_m[own].iter().sum(), length_m, is_rigid)
+/// Where limbs stand in an evaluation.
+struct Standing<'a> {
+    tree: &'a KinematicTree,
+    motion: Motion<'a>,
+    offsets: &'a Offsets,
+    dynamics: &'a ForwardDynamics,
+}
+
+impl LoopGeometry for Standing<'_> {
+    fn proximal(&self, limb: usize) -> Place {
+        self.dynamics.proximal(limb)
+    }
+
+    fn distal(&self, limb: usize) -> Place {
+        self.dynamics.distal(limb)
+    }
+
+    fn tie(&self, closure: usize, body: usize) -> Place {
+        let attitude = self.motion.bodies[body].attitude;
+        Place::new(attitude, self.offsets.ties_m[closure])
+    }
+
+    fn chord(&self, limb: usize) -> (DVec3, f64, bool) {
+        let (own, kind) = (&self.tree.limbs[limb].links, &self.tree.kinds[limb]);
+        let length_m = kind.length_m * own.len() as f64;
+        let is_rigid = kind.stretch == Stretch::Rigid;
+        let spans = self.motion.links.span_m[own.clone()].iter();
+        (spans.sum(), length_m, is_rigid)
+    }
 }
 
 /// Of each closure, how far its tip is from its place (m) and how fast it leaves it (m/s); `anchors` has the

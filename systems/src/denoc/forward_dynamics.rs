@@ -143,6 +143,23 @@ impl ForwardDynamics {
         loads: &Loads,
         out: &mut Accelerations,
     ) -> Result<(), Massless> {
+        self.sweep_inward(tree, states, offsets, loads, out)?;
+        self.sweep_outward(tree, loads, out);
+        Ok(())
+    }
+
+    /// The sweep inward: leaves factors, biases, and the accelerations of bases.
+    ///
+    /// # Errors
+    /// [`Massless`].
+    pub fn sweep_inward(
+        &mut self,
+        tree: &KinematicTree,
+        states: (&LinkStates, &[BodyState]),
+        offsets: &[LimbOffsets],
+        loads: &Loads,
+        out: &mut Accelerations,
+    ) -> Result<(), Massless> {
         let (links, bodies) = states;
         for (index, limb) in tree.limbs.iter().enumerate() {
             let [proximal, distal] = &mut self.ends[index];
@@ -162,10 +179,14 @@ impl ForwardDynamics {
         for &base in &tree.bases {
             out.bodies[base] = self.solve_base(base, loads).ok_or(Massless)?;
         }
+        if all_positive { Ok(()) } else { Err(Massless) }
+    }
+
+    /// The sweep outward, from the bases to all that they carry.
+    pub fn sweep_outward(&self, tree: &KinematicTree, loads: &Loads, out: &mut Accelerations) {
         for index in 0..tree.limbs.len() {
             self.sweep_limb_outward(tree, index, loads, out);
         }
-        if all_positive { Ok(()) } else { Err(Massless) }
     }
 
     /// Eliminates the body at the end of a limb and then its links; whether all that could be.

@@ -14,7 +14,7 @@
 
 use glam::DVec3;
 
-use super::closed_dynamics::{ClosedDynamics, Offsets};
+use super::closed_dynamics::{ClosedDynamics, Motion, Offsets};
 use super::forward_dynamics::{Accelerations, Loads, Massless};
 use super::kinematics::{BodyState, LinkStates, PointState};
 use super::tree::KinematicTree;
@@ -83,5 +83,10 @@ pub fn allowed_motion(
             before = here;
         }
     }
-    dynamics.solve(tree, (&links, &still), offsets, &momenta, out)
+    let motion = Motion {
+        links: &links,
+        bodies: &still,
+        ties: &[],
+    };
+    dynamics.solve(tree, motion, offsets, &momenta, out)
 }

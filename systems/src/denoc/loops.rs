@@ -14,10 +14,9 @@
 //!
 //! **Redundant loops.** Three rigid tethers between two bodies are independent; of four, one is more than
 //! the lengths can tell: A is singular, and forces with G' lambda = 0 could be added. Tethers that are
-//! almost rigid are not in doubt: they share the load so that their elastic energy is the least
-//! (Castigliano). Where the tethers of a graph are straight, [`super::self_stress`] says in advance which
-//! combinations are redundant, and `shared_load.rs` puts the energy in the place of what they would say twice.
-//! What becomes singular on the way is regularised: with H_i the force with which limb i holds what it carries,
+//! almost rigid are not in doubt: they share the load by their elasticity. Where the tethers of a graph are
+//! straight, [`super::self_stress`] says in advance which combinations are redundant, and `shared_load.rs` puts
+//! the elasticity of the tethers in the place of what their lengths would say twice. What becomes singular on the way is regularised: with H_i the force with which limb i holds what it carries,
 //! and kappa_i its compliance,
 //!
 //! ```text
@@ -25,7 +24,7 @@
 //! ```
 //!
 //! for a small eps, followed by refinements with A itself: where A is regular they take the effect of eps
-//! away, where it is not, the solution of least energy is left.
+//! away, where it is not, the solution of least energy is left. Where no pivot of A is small there is no eps.
 //!
 //! **A tip has a mass**, so that the recursion can move it: a share of the mass of the body to which it is
 //! tied, lent by that body at the very place, which changes nothing once the tip stays there. A tip that is
@@ -35,8 +34,9 @@ use glam::DVec3;
 
 mod shared_load;
 
-use shared_load::SharedLoad;
+use shared_load::{Law, SharedLoad};
 
+use super::articulated_body::BodyBias;
 use super::articulated_link::Coupling;
 use super::reduced_tree::{Factors, ReducedTree};
 use super::self_stress::{SelfStress, Strut};
@@ -45,9 +45,12 @@ use crate::linearised_motion::body_block::{Place, Twist};
 
 /// eps, as a part of what makes it weigh as much as A.
 const BY_ENERGY: f64 = 1e-9;
+/// A pivot below this part of its diagonal is small: A is regularised.
+const SMALL: f64 = 1e-7;
 /// A pivot below this part of its diagonal is round-off.
 const DEPENDENT: f64 = 1e-14;
-const REFINEMENTS: usize = 3;
+/// Refinements where A is regular, and where it has been regularised.
+const REFINEMENTS: [usize; 2] = [1, 3];
 
 /// A tip, and the place on a body where it belongs.
 #[derive(Clone, Copy, Debug)]
@@ -56,18 +59,51 @@ struct Tie {
     onto: Option<(usize, Place)>,
 }
 
+/// How a tether gives under a force, as far as the lengths of rigid links leave its tension undetermined.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LimbElasticity {
+    /// kappa: of its length L at rest, L / EA, m/N.
+    pub compliance_m_n: f64,
+    /// Damping over stiffness, s.
+    pub retardation_s: f64,
+}
+
+/// Where the limbs of a tree stand at one state.
+pub trait LoopGeometry {
+    /// The place of a limb's proximal end on its parent.
+    fn proximal(&self, limb: usize) -> Place;
+    /// The place of a limb's distal end on what it carries.
+    fn distal(&self, limb: usize) -> Place;
+    /// The place of the tip of a closure on a body.
+    fn tie(&self, closure: usize, body: usize) -> Place;
+    /// The chord of a limb (m), its length (m) and whether it is rigid.
+    fn chord(&self, limb: usize) -> (DVec3, f64, bool);
+}
+
+/// What tips are to be told beside their gaps where the tethers of a loop are redundant.
+#[derive(Clone, Copy, Debug)]
+pub enum Told<'a> {
+    /// Nothing: impulses, or a change of positions or velocities.
+    Nothing,
+    /// Forces, on top of those of [`Loops::drift`]: how far tips have left their places (m) and how fast they do
+    /// (m/s).
+    Forces(&'a [[DVec3; 2]]),
+    /// The increments of an implicit stage: how tips leave their places in V without the multipliers (m/s), and
+    /// in r_x (m).
+    Stage(&'a [DVec3], &'a [DVec3]),
+}
+
 /// The loops of a tree at one state.
 #[derive(Clone, Debug, Default)]
 pub struct Loops {
     reduced: ReducedTree,
     ties: Vec<Tie>,
-    /// kappa of each limb: how much it gives under a force, m/N, up to a common factor.
-    compliance: Vec<f64>,
+    elasticity: Vec<LimbElasticity>,
     /// A, row by row.
     matrix: Vec<f64>,
     /// R: of each limb and direction of its hold, a row.
     holds: Vec<f64>,
-    /// eps.
+    /// eps; zero where A is regular.
     by_energy: f64,
     /// Lower triangular factor of A + eps R' kappa R.
     factor: Vec<f64>,
@@ -81,13 +117,13 @@ pub struct Loops {
 }
 
 impl Loops {
-    /// Of a tree whose limbs have these compliances (m/N, up to a common factor).
+    /// Of a tree with these limbs.
     #[must_use]
-    pub fn new(tree: &KinematicTree, compliance: Vec<f64>) -> Self {
+    pub fn new(tree: &KinematicTree, elasticity: Vec<LimbElasticity>) -> Self {
         let n = 3 * tree.closures.len();
         Self {
             ties: Vec::with_capacity(tree.closures.len()),
-            compliance,
+            elasticity,
             matrix: vec![0.0; n * n],
             holds: vec![0.0; 3 * tree.limbs.len() * n],
             factor: vec![0.0; n * n],
@@ -97,26 +133,70 @@ impl Loops {
         }
     }
 
-    /// Finds A and its factors from a factorised tree: `proximal` is the place of each limb on its parent,
-    /// `onto` the place of each tip on its body, `chord` the chord of each limb with its length (m) and whether
-    /// it is rigid.
+    /// Finds A and its factors from a factorised tree, for accelerations or, with its g, for an implicit stage.
     pub fn factorise<E: Coupling>(
         &mut self,
         tree: &KinematicTree,
         factors: &Factors<'_, E>,
-        proximal: impl Fn(usize) -> Place,
-        onto: impl Fn(usize, usize) -> Place,
-        distal: impl Fn(usize) -> Place,
-        chord: impl Fn(usize) -> (DVec3, f64, bool),
+        geometry: &impl LoopGeometry,
+        stage_g: Option<f64>,
     ) {
-        self.reduced.take(tree, factors, &proximal);
+        self.reduced
+            .take(tree, factors, |limb| geometry.proximal(limb));
         self.ties.clear();
         for (index, closure) in tree.closures.iter().enumerate() {
             self.ties.push(Tie {
                 tip: closure.tip,
-                onto: closure.onto.map(|body| (body, onto(index, body))),
+                onto: closure.onto.map(|body| (body, geometry.tie(index, body))),
             });
         }
+        self.find_matrix(tree);
+        self.shared = None;
+        if !self.stress.is_absent() {
+            let struts = self.struts(tree, geometry);
+            self.stress.find(&struts);
+            self.chords.clear();
+            self.chords.extend(struts.iter().map(Strut::direction));
+        }
+        if self.stress.states.is_empty() {
+            self.factorise_matrix();
+            return;
+        }
+        let tips: Vec<usize> = tree.closures.iter().map(|closure| closure.limb).collect();
+        self.shared = Some(SharedLoad::new(
+            &self.matrix,
+            &self.stress.states,
+            &self.chords,
+            &tips,
+            (&self.holds, &self.elasticity),
+            stage_g.map_or(Law::Forces, Law::Stage),
+        ));
+    }
+
+    /// How bodies and tips move under the loads of the last sweep inward, and with what force each limb then holds
+    /// what it carries, N, both without the multipliers: `bases` has the motions of the bases, `biases` what the
+    /// sweep left at bodies, `centripetal` what proximal ends accelerate by besides the motion of their parents.
+    pub fn drift(
+        &mut self,
+        tree: &KinematicTree,
+        bases: &[Twist],
+        biases: &[BodyBias],
+        centripetal: impl Fn(usize) -> DVec3,
+    ) {
+        for &base in &tree.bases {
+            self.reduced.motions[base] = bases[base];
+        }
+        self.reduced.drift(tree, biases, centripetal);
+    }
+
+    /// How a tip leaves its place where bodies and tips move as [`Loops::drift`] has found.
+    #[must_use]
+    pub fn drifting_gap(&self, closure: usize) -> DVec3 {
+        self.gap(closure, &self.reduced.motions)
+    }
+
+    /// A, and the forces of limbs, column by column from the answers to unit forces on tips.
+    fn find_matrix(&mut self, tree: &KinematicTree) {
         let n = self.multipliers.len();
         for column in 0..n {
             let mut unit = [0.0; 3];
@@ -135,33 +215,10 @@ impl Loops {
                 }
             }
         }
-        let struts = self.struts(tree, proximal, distal, chord);
-        self.stress.find(&struts);
-        self.shared = None;
-        if self.stress.states.is_empty() {
-            self.factorise_matrix();
-            return;
-        }
-        self.chords.clear();
-        self.chords.extend(struts.iter().map(Strut::direction));
-        let tips: Vec<usize> = tree.closures.iter().map(|closure| closure.limb).collect();
-        self.shared = Some(SharedLoad::new(
-            &self.matrix,
-            &self.stress.states,
-            &self.chords,
-            &tips,
-            (&self.holds, &self.compliance),
-        ));
     }
 
     /// The limbs as struts between bodies.
-    fn struts(
-        &self,
-        tree: &KinematicTree,
-        proximal: impl Fn(usize) -> Place,
-        distal: impl Fn(usize) -> Place,
-        chord: impl Fn(usize) -> (DVec3, f64, bool),
-    ) -> Vec<Strut> {
+    fn struts(&self, tree: &KinematicTree, geometry: &impl LoopGeometry) -> Vec<Strut> {
         let limbs = tree.limbs.iter().enumerate();
         limbs
             .map(|(index, limb)| {
@@ -169,14 +226,14 @@ impl Loops {
                     .closures
                     .iter()
                     .position(|closure| closure.limb == index);
-                let (chord_m, length_m, is_rigid) = chord(index);
+                let (chord_m, length_m, is_rigid) = geometry.chord(index);
                 Strut {
                     chord_m,
                     length_m,
                     is_rigid,
-                    near: limb.parent.map(|body| (body, proximal(index))),
+                    near: limb.parent.map(|body| (body, geometry.proximal(index))),
                     far: match tie {
-                        None => Some((limb.child, distal(index))),
+                        None => Some((limb.child, geometry.distal(index))),
                         Some(tie) => self.ties[tie].onto,
                     },
                 }
@@ -211,46 +268,61 @@ impl Loops {
     }
 
     fn factorise_matrix(&mut self) {
+        self.by_energy = 0.0;
+        self.fill_factor();
+        if cholesky(&mut self.factor, self.multipliers.len()) < SMALL {
+            self.by_energy = self.regularisation();
+            self.fill_factor();
+            cholesky(&mut self.factor, self.multipliers.len());
+        }
+    }
+
+    /// Puts the lower triangle of A + eps R' kappa R where it is to be factorised.
+    fn fill_factor(&mut self) {
         let n = self.multipliers.len();
-        let weighed = |i: usize, j: usize| -> f64 {
-            let rows = self.holds.chunks_exact(n);
-            let parts = rows.enumerate();
-            parts
-                .map(|(row, hold)| self.compliance[row / 3] * hold[i] * hold[j])
-                .sum()
-        };
-        let diagonal = |i: usize| self.matrix[i * n + i];
-        let ratio = |i: usize| diagonal(i) / weighed(i, i);
-        let least = (0..n).map(ratio).fold(f64::INFINITY, f64::min);
-        let by_energy = if least.is_finite() {
-            BY_ENERGY * least
-        } else {
-            0.0
-        };
-        let mut factor = vec![0.0; n * n];
         for i in 0..n {
             for j in 0..=i {
                 let symmetric = 0.5 * (self.matrix[i * n + j] + self.matrix[j * n + i]);
-                factor[i * n + j] = symmetric + by_energy * weighed(i, j);
+                self.factor[i * n + j] = symmetric;
+                if self.by_energy > 0.0 {
+                    self.factor[i * n + j] += self.by_energy * self.energy(i, j);
+                }
             }
         }
-        self.by_energy = by_energy;
-        self.factor = factor;
-        cholesky(&mut self.factor, n);
+    }
+
+    /// Of R' kappa R.
+    fn energy(&self, i: usize, j: usize) -> f64 {
+        let rows = self.holds.chunks_exact(self.multipliers.len());
+        let each = rows.enumerate();
+        each.map(|(row, hold)| self.elasticity[row / 3].compliance_m_n * hold[i] * hold[j])
+            .sum()
+    }
+
+    /// eps.
+    fn regularisation(&self) -> f64 {
+        let n = self.multipliers.len();
+        let ratio = |i: usize| self.matrix[i * n + i] / self.energy(i, i);
+        let least = (0..n).map(ratio).fold(f64::INFINITY, f64::min);
+        if least.is_finite() {
+            BY_ENERGY * least
+        } else {
+            0.0
+        }
     }
 
     /// The multipliers that make the gaps (accelerations, velocities or displacements of tips from their
-    /// places, less those wanted) vanish; `holds` are the forces of the limbs without them, where loads are
-    /// to be shared.
-    pub fn close(&mut self, gaps: &[DVec3], holds: Option<&[DVec3]>) {
+    /// places, less those wanted) vanish, where redundant tethers are told what else there is.
+    pub fn close(&mut self, gaps: &[DVec3], told: Told<'_>) {
         if let Some(shared) = &self.shared {
-            shared.solve(gaps, &self.chords, holds, &mut self.multipliers);
+            let holds = &self.reduced.holds;
+            shared.solve(gaps, (&self.chords, holds), told, &mut self.multipliers);
             return;
         }
         let n = self.multipliers.len();
         let wanted = |row: usize| -gaps[row / 3][row % 3];
         self.multipliers.fill(0.0);
-        for pass in 0..=REFINEMENTS {
+        for pass in 0..=REFINEMENTS[usize::from(self.by_energy > 0.0)] {
             for row in 0..n {
                 let matrix = &self.matrix[row * n..(row + 1) * n];
                 let reached: f64 = matrix
@@ -260,17 +332,25 @@ impl Loops {
                     .sum();
                 self.step[row] = wanted(row) - reached;
             }
-            if let (0, Some(holds)) = (pass, holds) {
-                for (row, of_limb) in self.holds.chunks_exact(n).enumerate() {
-                    let pull = self.by_energy * self.compliance[row / 3] * holds[row / 3][row % 3];
-                    for (step, hold) in self.step.iter_mut().zip(of_limb) {
-                        *step -= pull * hold;
-                    }
-                }
+            if let (0, Told::Forces(_), true) = (pass, told, self.by_energy > 0.0) {
+                self.pull_by_energy();
             }
             substitute(&self.factor, n, &mut self.step);
             for (multiplier, step) in self.multipliers.iter_mut().zip(&self.step) {
                 *multiplier += step;
+            }
+        }
+    }
+
+    /// Takes from the right-hand side what the forces of the limbs without the multipliers weigh there.
+    fn pull_by_energy(&mut self) {
+        let holds = &self.reduced.holds;
+        let n = self.multipliers.len();
+        for (row, of_limb) in self.holds.chunks_exact(n).enumerate() {
+            let compliance_m_n = self.elasticity[row / 3].compliance_m_n;
+            let pull = self.by_energy * compliance_m_n * holds[row / 3][row % 3];
+            for (step, hold) in self.step.iter_mut().zip(of_limb) {
+                *step -= pull * hold;
             }
         }
     }
@@ -296,13 +376,15 @@ impl Loops {
 }
 
 /// Factorises the lower triangle of a symmetric matrix in place: L L'. A row that depends on those before is
-/// left out: what is asked of it is answered with zero.
-fn cholesky(a: &mut [f64], n: usize) {
+/// left out: what is asked of it is answered with zero. Returns the smallest pivot as a part of its diagonal.
+fn cholesky(a: &mut [f64], n: usize) -> f64 {
+    let mut least = f64::INFINITY;
     for j in 0..n {
         let (above, below) = a.split_at_mut((j + 1) * n);
         let row = &mut above[j * n..];
         let whole = row[j];
         let rest = whole - row[..j].iter().map(|v| v * v).sum::<f64>();
+        least = least.min(rest / whole);
         let pivot = if rest > DEPENDENT * whole {
             rest.sqrt()
         } else {
@@ -314,6 +396,7 @@ fn cholesky(a: &mut [f64], n: usize) {
             other[j] = (other[j] - known) / pivot;
         }
     }
+    least
 }
 
 /// Solves `L L' x = b` in place.

@@ -10,12 +10,16 @@
 //! ```
 //!
 //! with F and W of each link ([`ArticulatedLink::follows`], [`ArticulatedLink::yields`]). S is how Q yields with
-//! all that it carries.
+//! all that it carries. Under loads that have been swept inward, Q accelerates besides by
+//!
+//! ```text
+//! y_k = F_k y_(k-1) + a_k        a_k of link k where its proximal end is held
+//! ```
 
 use glam::{DMat3, DVec3};
 
 use super::articulated_body::{ArticulatedBody, BodyBias};
-use super::articulated_link::{ArticulatedLink, Coupling};
+use super::articulated_link::{ArticulatedLink, Coupling, LinkBias};
 use super::tree::KinematicTree;
 use crate::linearised_motion::body_block::{Place, Twist};
 use crate::linearised_motion::symmetric3::Symmetric3;
@@ -27,6 +31,8 @@ struct Piece {
     follows: DMat3,
     /// S.
     yields: DMat3,
+    /// y; zero where no loads were swept inward.
+    drifts: DVec3,
     /// Where its proximal end is on its parent.
     proximal: Place,
     /// Inertia that it carries at its distal end.
@@ -43,6 +49,8 @@ pub struct Factors<'a, E> {
     pub at_base: &'a [Symmetric3],
     /// What each limb carries at its distal end.
     pub carried: &'a [Symmetric3],
+    /// Of the links, what loads have left there on their way inward; empty where there were none.
+    pub biases: &'a [LinkBias],
 }
 
 /// The tree in pieces, and scratch for its answers.
@@ -71,14 +79,20 @@ impl ReducedTree {
         self.pieces.clear();
         for (index, limb) in tree.limbs.iter().enumerate() {
             let (mut follows, mut yields) = (DMat3::IDENTITY, DMat3::ZERO);
-            for link in &factors.links[limb.links.clone()] {
-                let f = link.follows();
+            let mut drifts = DVec3::ZERO;
+            for link in limb.links.clone() {
+                let at = &factors.links[link];
+                let f = at.follows();
                 follows = f * follows;
-                yields = DMat3::from(link.yields()) + f * yields * f.transpose();
+                yields = DMat3::from(at.yields()) + f * yields * f.transpose();
+                if let Some(bias) = factors.biases.get(link) {
+                    drifts = f * drifts + bias.distal;
+                }
             }
             self.pieces.push(Piece {
                 follows,
                 yields,
+                drifts,
                 proximal: proximal(index),
                 carried: factors.carried[index],
             });
@@ -94,11 +108,35 @@ impl ReducedTree {
         self.holds.resize(tree.limbs.len(), DVec3::ZERO);
     }
 
+    /// Finds how bodies and tips move under the loads that were swept inward: `biases` is what these left at
+    /// bodies, `motions` hold the bases, and `centripetal` is what the place of a limb's proximal end accelerates
+    /// by besides the motion of its parent, m/s^2.
+    pub fn drift(
+        &mut self,
+        tree: &KinematicTree,
+        biases: &[BodyBias],
+        centripetal: impl Fn(usize) -> DVec3,
+    ) {
+        for (index, (limb, piece)) in tree.limbs.iter().zip(&self.pieces).enumerate() {
+            let at = limb.parent.map_or(DVec3::ZERO, |body| {
+                piece.proximal.motion(self.motions[body])
+            });
+            let distal = piece.follows * (at + centripetal(index)) + piece.drifts;
+            let bias = &biases[limb.child];
+            self.motions[limb.child] = self.bodies[limb.child].outward(bias, distal);
+            self.holds[index] = piece.carried.times(distal) + bias.passed_on;
+        }
+    }
+
     /// Finds what `loads` alone do to bodies and tips.
     pub fn respond(&mut self, tree: &KinematicTree) {
         for (limb, piece) in tree.limbs.iter().zip(&self.pieces).rev() {
             let child = limb.child;
             let load = std::mem::take(&mut self.loads[child]);
+            if load == Twist::default() {
+                self.biases[child] = BodyBias::default();
+                continue;
+            }
             let bias = self.bodies[child].inward(-load, DVec3::ZERO);
             self.biases[child] = bias;
             if let Some(parent) = limb.parent {

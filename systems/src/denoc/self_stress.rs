@@ -76,6 +76,12 @@ pub struct SelfStress {
 }
 
 impl SelfStress {
+    /// Whether a first sight has found that there is none.
+    #[must_use]
+    pub fn is_absent(&self) -> bool {
+        self.struts.is_some() && self.states.is_empty()
+    }
+
     /// Finds the states for the struts as they stand now.
     pub fn find(&mut self, struts: &[Strut]) {
         let is_first = self.struts.is_none();
@@ -83,7 +89,7 @@ impl SelfStress {
             let limbs = 0..struts.len();
             limbs.filter(|limb| struts[*limb].is_taut()).collect()
         });
-        if taut.is_empty() || (!is_first && self.states.is_empty()) {
+        if taut.is_empty() {
             return;
         }
         let entry = |i: usize, j: usize| struts[taut[i]].with(&struts[taut[j]]);

@@ -13,13 +13,14 @@
 //! solve for accelerations; factors are kept for the stages of a step.
 //!
 //! Loops ask that V keeps their tips at their places, G V = g G r_v: multipliers see to it
-//! ([`super::loops`]), with the answers of the factorised matrix.
+//! ([`super::loops`]), with the answers of the factorised matrix; along what redundant tethers leave open they
+//! are forces of elasticity, implicit like those of springs.
 
 use glam::DVec3;
 
 use super::articulated_body::{ArticulatedBody, BodyBias, CENTRE};
 use super::articulated_link::{ArticulatedLink, Carried, LinkBias, Stretch};
-use super::loops::Loops;
+use super::loops::{LimbElasticity, Loops};
 use super::tree::{KinematicTree, Limb};
 use crate::linearised_motion::body_block::{BodyBlock, Place, Twist};
 use crate::linearised_motion::derivatives::Derivatives;
@@ -45,6 +46,8 @@ pub struct Extras {
     pub loose: Vec<usize>,
     /// Mass of the tip of each closure, lent by the body that it is tied to, kg.
     pub tips_kg: Vec<f64>,
+    /// Of each limb.
+    pub elasticity: Vec<LimbElasticity>,
 }
 
 /// Factors of the matrix of one step, and scratch for its solutions.
@@ -67,7 +70,10 @@ pub struct LinkStages {
     carried: Vec<Symmetric3>,
     extras: Extras,
     loops: Loops,
+    /// Of tips from their places: to be closed, in V without the multipliers, and in r_x.
     gaps: Vec<DVec3>,
+    moved_gaps: Vec<DVec3>,
+    given_gaps_m: Vec<DVec3>,
     biases: Vec<LinkBias>,
     body_biases: Vec<BodyBias>,
     /// Force that a link's stage puts on its distal end, and takes from its proximal one.
@@ -75,6 +81,8 @@ pub struct LinkStages {
     /// On joints, by link beyond which they are.
     loads: Vec<DVec3>,
     body_loads: Vec<Twist>,
+    /// Of the multipliers.
+    tip_loads: Vec<Twist>,
     motions: Vec<Twist>,
     speeds: Vec<Twist>,
     /// Of an error and of a step.
@@ -100,14 +108,17 @@ impl LinkStages {
             blocks: vec![BodyBlock::ZERO; bodies],
             knots: vec![Carried::default(); bodies],
             carried: vec![Symmetric3::default(); tree.limbs.len()],
-            loops: Loops::new(&tree, vec![1.0; tree.limbs.len()]),
+            loops: Loops::new(&tree, extras.elasticity.clone()),
             gaps: vec![DVec3::ZERO; tree.closures.len()],
+            moved_gaps: vec![DVec3::ZERO; tree.closures.len()],
+            given_gaps_m: vec![DVec3::ZERO; tree.closures.len()],
             extras,
             biases: vec![LinkBias::default(); links],
             body_biases: vec![BodyBias::default(); bodies],
             flows: vec![DVec3::ZERO; links],
             loads: vec![DVec3::ZERO; links],
             body_loads: vec![Twist::default(); bodies],
+            tip_loads: vec![Twist::default(); bodies],
             motions: vec![Twist::default(); bodies],
             speeds: vec![Twist::default(); bodies],
             displaced: [(); 2].map(|()| vec![0.0; topology.coordinates]),
@@ -231,6 +242,7 @@ impl LinkStages {
             *load = body.stage_load(g, *shift, *speed);
         }
         self.load_points(derivatives);
+        self.note_given_gaps();
     }
 
     fn places(&self, limb: &Limb, derivatives: &Derivatives) -> (Place, Place) {
@@ -342,15 +354,16 @@ impl StageSolver for LinkStages {
         let (r_v, r_s) = rest.split_at_mut(self.places.coordinates);
         self.load(derivatives, r_x, r_v);
         self.sweep_inward(derivatives);
+        if !self.tree.closures.is_empty() {
+            self.sweep_outward(derivatives, |_, _| {});
+            self.close_loops(derivatives);
+        }
         let g = self.g;
         self.sweep_outward(derivatives, |at, v| {
             let x = g * (v + DVec3::from_slice(&r_x[at..]));
             v.write_to_slice(&mut r_v[at..]);
             x.write_to_slice(&mut r_x[at..]);
         });
-        if !self.tree.closures.is_empty() {
-            self.close_loops(derivatives, r_x, r_v);
-        }
         for r in r_s {
             *r *= self.g;
         }

@@ -30,6 +30,7 @@ use crate::denoc::kinematics::{BodyState, LinkStates, PointState, sweep_outward}
 use crate::denoc::stage_system::JointPlaces;
 use crate::denoc::tree::LinkKind;
 use crate::fault::Fault;
+use crate::integration::Correction;
 
 /// Bodies whose links would move them by less than this, m, and rates along links below this, m/s, are
 /// round-off.
@@ -364,9 +365,10 @@ impl StateSpace for JointVector {
         self.first_order.gather_rates(world, &mut rates[2 * n..]);
     }
 
-    fn recentre(&mut self, world: &mut World, state: &mut [f64], rates: &mut [f64]) -> bool {
+    fn recentre(&mut self, world: &mut World, state: &mut [f64], rates: &mut [f64]) -> Correction {
         let n = self.places.coordinates;
-        let is_changed = self.close_after_step(world);
+        let correction = self.close_after_step(world);
+        let is_changed = correction != Correction::None;
         for (index, origin, mut chart, _, mut attitude, _, _) in
             self.components.body_query.iter_mut(world)
         {
@@ -381,7 +383,6 @@ impl StateSpace for JointVector {
             chart.0 = body.attitude.normalize();
             attitude.0 = chart.0;
             state[at..at + 3].fill(0.0);
-            rates[at..at + 3].copy_from_slice(&state[n + at..n + at + 3]);
         }
         if is_changed {
             self.write_loose(&mut state[..2 * n]);
@@ -396,10 +397,11 @@ impl StateSpace for JointVector {
             *chart = centre;
             state[at..at + 3].fill(0.0);
             rate.write_to_slice(&mut state[n + at..]);
-            rate.write_to_slice(&mut rates[at..]);
             acceleration.write_to_slice(&mut rates[n + at..]);
         }
-        is_changed
+        // At the centres of all charts, rates of coordinates are the velocities.
+        rates[..n].copy_from_slice(&state[n..2 * n]);
+        correction
     }
 
     fn error_scales(&mut self, world: &mut World) -> Vec<f64> {

@@ -7,6 +7,7 @@ use super::rigid_body::CarriedMass;
 use crate::denoc::closed_dynamics::{ClosedDynamics, Offsets};
 use crate::denoc::forward_dynamics::{Accelerations, BodyLoad, Loads};
 use crate::denoc::kinematics::{BodyState, LinkStates};
+use crate::denoc::loops::LimbElasticity;
 use crate::denoc::tree::KinematicTree;
 use crate::linearised_motion::body_block::BodyBlock;
 
@@ -42,8 +43,8 @@ pub struct TreeEntities {
     pub tips_kg: Vec<f64>,
     /// What each body has lent to tips, taken off what it carries: all of it is negative.
     pub lent: Vec<CarriedMass>,
-    /// Compliance of each limb, m/N.
-    pub compliance_m_n: Vec<f64>,
+    /// Elasticity of each limb.
+    pub elasticity: Vec<LimbElasticity>,
     /// Number of tether points.
     pub points: usize,
 }
@@ -59,6 +60,8 @@ pub struct LinkMechanism {
     pub links: LinkStates,
     /// Attitudes and motions of bodies and tips.
     pub bodies: Vec<BodyState>,
+    /// Of each closure that has one, its anchor.
+    pub ties: Vec<BodyState>,
     /// What acts.
     pub loads: Loads,
     /// What follows.
@@ -99,9 +102,10 @@ impl LinkMechanism {
         Self {
             links: LinkStates::default(),
             bodies: vec![BodyState::default(); tree.carried_by.len()],
+            ties: vec![BodyState::default(); tree.closures.len()],
             loads,
             accelerations: Accelerations::new(&tree, entities.points),
-            dynamics: ClosedDynamics::new(&tree, entities.compliance_m_n.clone()),
+            dynamics: ClosedDynamics::new(&tree, entities.elasticity.clone()),
             link_of_segment,
             tree,
             entities,

@@ -20,6 +20,7 @@ use super::link_mechanism::LinkMechanism;
 use super::rigid_body::CarriedMass;
 use super::segments::PointArrays;
 use crate::denoc::articulated_link::Stretch;
+use crate::denoc::closed_dynamics::Motion;
 use crate::denoc::forward_dynamics::BodyLoad;
 use crate::fault::FaultSlot;
 use crate::linearised_motion::body_block::{BodyBlock, Twist};
@@ -104,9 +105,14 @@ pub fn solve_links(
             *acceleration = found.0;
         }
     }
+    let motion = Motion {
+        links: &mechanism.links,
+        bodies: &mechanism.bodies,
+        ties: &mechanism.ties,
+    };
     let solved = mechanism.dynamics.solve(
         &mechanism.tree,
-        (&mechanism.links, &mechanism.bodies),
+        motion,
         &mechanism.entities.offsets,
         &mechanism.loads,
         &mut mechanism.accelerations,

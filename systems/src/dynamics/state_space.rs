@@ -5,6 +5,7 @@ use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
 
 use crate::fault::Fault;
+use crate::integration::Correction;
 
 /// Sizes of the parts of a state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,8 +51,8 @@ pub trait StateSpace: Send + Sync {
     fn gather_rates(&mut self, world: &mut World, state: &[f64], rates: &mut [f64]);
 
     /// Takes an accepted state, which was evaluated last, as the new centre of all charts, in `state` and
-    /// in `rates`. Whether the state itself was changed, to meet constraints, and has to be evaluated anew.
-    fn recentre(&mut self, world: &mut World, state: &mut [f64], rates: &mut [f64]) -> bool;
+    /// in `rates`, once it has been made to meet constraints.
+    fn recentre(&mut self, world: &mut World, state: &mut [f64], rates: &mut [f64]) -> Correction;
 
     /// The scale of an error in each part of the state that matters as much as 1 m.
     fn error_scales(&mut self, world: &mut World) -> Vec<f64>;

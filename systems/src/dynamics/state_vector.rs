@@ -19,6 +19,7 @@ use super::first_order::FirstOrderStates;
 use super::rotation_chart::{exponential, rotation_rate};
 use super::state_space::{Layout, StateSpace};
 use crate::fault::Fault;
+use crate::integration::Correction;
 
 /// Coordinates that a node of a tether has.
 pub const NODE_COORDINATES: usize = 3;
@@ -128,7 +129,7 @@ impl StateSpace for StateVector {
         self.first_order.gather_rates(world, &mut rates[2 * n..]);
     }
 
-    fn recentre(&mut self, world: &mut World, state: &mut [f64], rates: &mut [f64]) -> bool {
+    fn recentre(&mut self, world: &mut World, state: &mut [f64], rates: &mut [f64]) -> Correction {
         let n = self.layout.coordinates;
         for (index, _, mut chart, _, mut attitude, _, _) in self.bodies.iter_mut(world) {
             let rotation = &mut state[index.0 + 3..index.0 + 6];
@@ -138,7 +139,7 @@ impl StateSpace for StateVector {
             let velocity = n + index.0 + 3;
             rates[index.0 + 3..index.0 + 6].copy_from_slice(&state[velocity..velocity + 3]);
         }
-        false
+        Correction::None
     }
 
     fn error_scales(&mut self, world: &mut World) -> Vec<f64> {

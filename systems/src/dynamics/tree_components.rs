@@ -169,6 +169,7 @@ impl TreeComponents {
         let mut mechanism = world.resource_mut::<LinkMechanism>();
         mechanism.links.clone_from(links);
         mechanism.bodies.copy_from_slice(&self.bodies);
+        mechanism.ties.copy_from_slice(&self.ties);
     }
 
     /// Gives the mechanism the masses of its bodies as they stand.

@@ -15,6 +15,18 @@ pub mod torsional_modes;
 
 use crate::fault::Fault;
 
+/// How an accepted state was corrected to meet constraints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Correction {
+    /// Not at all.
+    None,
+    /// By so little that its rates hold for the next step; what else its evaluation has found is to be found anew
+    /// before it is looked at.
+    Slight,
+    /// So that it has to be evaluated anew.
+    Large,
+}
+
 /// Ordinary differential equations y' = f(t, y) of a state as
 /// [`StateVector`](crate::dynamics::state_vector) lays it out.
 pub trait Equations {
@@ -25,9 +37,9 @@ pub trait Equations {
     fn rates(&mut self, time_s: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Fault>;
 
     /// Called once for every accepted state, whose evaluation was the last one: attitudes are taken
-    /// as the new centres of their charts, in `state` and in `rates`. Whether the state itself was changed,
-    /// to meet constraints, and has to be evaluated anew.
-    fn accept(&mut self, state: &mut [f64], rates: &mut [f64]) -> bool;
+    /// as the new centres of their charts, in `state` and in `rates`, and the state is made to meet
+    /// constraints.
+    fn accept(&mut self, state: &mut [f64], rates: &mut [f64]) -> Correction;
 
     /// Linearises the motion about the accepted state, whose evaluation was the last one.
     fn linearise(&mut self);
@@ -79,6 +91,8 @@ pub struct Trajectory {
     pub rates: Vec<f64>,
     /// Whether `rates` belong to `state`; something that switches at `time_s` makes them stale.
     pub rates_are_current: bool,
+    /// Whether the last evaluation was of `state` itself, before any correction.
+    pub is_seen_as_it_is: bool,
     /// Whether something has switched at `time_s`, so that the next step must not trust the last; the
     /// integrator clears it.
     pub has_switched: bool,
@@ -109,6 +123,7 @@ impl Trajectory {
             state,
             rates,
             rates_are_current: false,
+            is_seen_as_it_is: false,
             has_switched: true,
             cost: Cost::default(),
         }
@@ -122,8 +137,18 @@ impl Trajectory {
 
     /// Tells the equations that the state, whose evaluation was the last one, is accepted.
     fn accept(&mut self, equations: &mut dyn Equations) {
-        let is_changed = equations.accept(&mut self.state, &mut self.rates);
-        self.rates_are_current &= !is_changed;
+        let correction = equations.accept(&mut self.state, &mut self.rates);
+        self.rates_are_current &= correction != Correction::Large;
+        self.is_seen_as_it_is = correction == Correction::None;
+    }
+
+    /// Evaluates the current state unless it was, so that everything that was found belongs to it.
+    ///
+    /// # Errors
+    /// As [`Equations::rates`].
+    pub fn look(&mut self, equations: &mut dyn Equations) -> Result<(), StepFailure> {
+        self.rates_are_current &= self.is_seen_as_it_is;
+        self.refresh(equations)
     }
 
     /// Evaluates the rates of the current state unless they are known.
@@ -140,6 +165,7 @@ impl Trajectory {
                 return Err(StepFailure::NotFinite { index });
             }
             self.rates_are_current = true;
+            self.is_seen_as_it_is = true;
         }
         Ok(())
     }

@@ -94,8 +94,17 @@ impl Case {
         let (span_m, rate_m_s) = (0..tree.links).map(&mut link).unzip();
         let links = LinkStates { span_m, rate_m_s };
         let mut found = Accelerations::new(&tree, topology.points);
-        ClosedDynamics::new(&tree, vec![1.0; tree.limbs.len()])
-            .solve(&tree, (&links, &states), &offsets, &loads, &mut found)
+        let elasticity = LimbElasticity {
+            compliance_m_n: 1e-4,
+            retardation_s: 0.0,
+        };
+        let motion = Motion {
+            links: &links,
+            bodies: &states,
+            ties: &[],
+        };
+        ClosedDynamics::new(&tree, vec![elasticity; tree.limbs.len()])
+            .solve(&tree, motion, &offsets, &loads, &mut found)
             .expect("everything has a mass");
         Self {
             tree,

@@ -3,7 +3,9 @@
 
 use glam::DVec3;
 
-use super::{Accelerations, ForwardDynamics};
+use super::{Accelerations, ForwardDynamics, Loads};
+use crate::denoc::articulated_body::BodyBias;
+use crate::denoc::articulated_link::LinkBias;
 use crate::denoc::reduced_tree::Factors;
 use crate::denoc::tree::KinematicTree;
 use crate::linearised_motion::body_block::{Place, Twist};
@@ -17,6 +19,7 @@ impl ForwardDynamics {
             bodies: &self.bodies,
             at_base: &self.at_base,
             carried: &self.carried,
+            biases: &self.biases,
         }
     }
 
@@ -32,33 +35,86 @@ impl ForwardDynamics {
         self.ends[limb][1].place
     }
 
-    /// The force with which each limb held what it carries in a solution with these accelerations, N.
-    pub fn holds(&self, tree: &KinematicTree, found: &Accelerations, holds: &mut Vec<DVec3>) {
-        holds.clear();
-        for (index, limb) in tree.limbs.iter().enumerate() {
-            let distal = &self.ends[index][1];
-            let at = distal.place.motion(found.bodies[limb.child]) + distal.centripetal;
-            let bias = &self.body_biases[limb.child];
-            holds.push(self.carried[index].times(at) + bias.passed_on);
+    /// What the last sweep inward left at bodies and tips.
+    #[must_use]
+    pub fn body_biases(&self) -> &[BodyBias] {
+        &self.body_biases
+    }
+
+    /// By how much the proximal end of a limb accelerates besides the motion of its parent, m/s^2.
+    #[must_use]
+    pub fn centripetal(&self, tree: &KinematicTree, limb: usize, loads: &Loads) -> DVec3 {
+        match tree.limbs[limb].parent {
+            Some(_) => self.ends[limb][0].centripetal,
+            None => loads.anchor_m_s2[limb],
         }
     }
 
-    /// Adds to `found` what `loads` on bodies and tips do besides; they are used up.
+    /// Sweeps more `loads` on bodies and tips inward, on top of those that were; they are used up. Adds what they
+    /// do to the accelerations of bases.
+    pub fn sweep_more_inward(
+        &mut self,
+        tree: &KinematicTree,
+        loads: &mut [Twist],
+        found: &mut Accelerations,
+    ) {
+        self.sweep_loads_inward(
+            tree,
+            loads,
+            |old, more| *old = old.plus(&more),
+            |old, more| {
+                *old = old.plus(&more);
+            },
+        );
+        for &base in &tree.bases {
+            found.bodies[base].linear += self.motions[base].linear;
+            found.bodies[base].angular += self.motions[base].angular;
+        }
+    }
+
+    /// Finds what `loads` on bodies and tips alone do; they are used up.
     pub fn respond(
         &mut self,
         tree: &KinematicTree,
         loads: &mut [Twist],
         found: &mut Accelerations,
     ) {
+        self.sweep_loads_inward(tree, loads, |old, new| *old = new, |old, new| *old = new);
+        for (index, limb) in tree.limbs.iter().enumerate() {
+            let proximal = self.ends[index][0].place;
+            let mut at = limb
+                .parent
+                .map_or(DVec3::ZERO, |parent| proximal.motion(self.motions[parent]));
+            for (k, link) in limb.links.clone().enumerate() {
+                let (distal, tension) = self.links[link].outward(&self.biases[link], at);
+                found.span_m_s2[link] = distal - at;
+                found.tension_n[link] = tension;
+                found.point_m_s2[limb.distal_point(k)] = distal;
+                at = distal;
+            }
+            let child = limb.child;
+            self.motions[child] = self.bodies[child].outward(&self.body_biases[child], at);
+        }
+        found.bodies.copy_from_slice(&self.motions);
+    }
+
+    /// Sweeps loads inward and hands what they leave at links and at bodies over; leaves the motions of bases.
+    fn sweep_loads_inward(
+        &mut self,
+        tree: &KinematicTree,
+        loads: &mut [Twist],
+        mut at_link: impl FnMut(&mut LinkBias, LinkBias),
+        mut at_body: impl FnMut(&mut BodyBias, BodyBias),
+    ) {
         for (index, limb) in tree.limbs.iter().enumerate().rev() {
             let child = limb.child;
             let load = std::mem::take(&mut loads[child]);
             let bias = self.bodies[child].inward(-load, DVec3::ZERO);
-            self.body_biases[child] = bias;
+            at_body(&mut self.body_biases[child], bias);
             let mut force = bias.passed_on;
             for link in limb.links.clone().rev() {
                 let bias = self.links[link].inward(force, 0.0);
-                self.biases[link] = bias;
+                at_link(&mut self.biases[link], bias);
                 force = bias.passed_on;
             }
             if let Some(parent) = limb.parent {
@@ -72,25 +128,6 @@ impl ForwardDynamics {
             let bias = self.bodies[base].inward(-load, DVec3::ZERO);
             let motion = self.bodies[base].free(&bias, &self.at_base[base]);
             self.motions[base] = motion.unwrap_or_default();
-        }
-        for (index, limb) in tree.limbs.iter().enumerate() {
-            let proximal = self.ends[index][0].place;
-            let mut at = limb
-                .parent
-                .map_or(DVec3::ZERO, |parent| proximal.motion(self.motions[parent]));
-            for (k, link) in limb.links.clone().enumerate() {
-                let (distal, tension) = self.links[link].outward(&self.biases[link], at);
-                found.span_m_s2[link] += distal - at;
-                found.tension_n[link] += tension;
-                found.point_m_s2[limb.distal_point(k)] += distal;
-                at = distal;
-            }
-            let child = limb.child;
-            self.motions[child] = self.bodies[child].outward(&self.body_biases[child], at);
-        }
-        for (body, more) in found.bodies.iter_mut().zip(&self.motions) {
-            body.linear += more.linear;
-            body.angular += more.angular;
         }
     }
 }

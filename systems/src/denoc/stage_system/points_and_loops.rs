@@ -5,6 +5,7 @@ use glam::{DMat3, DVec3};
 
 use super::{LinkStages, ends, places};
 use crate::denoc::articulated_link::Stretch;
+use crate::denoc::loops::{LoopGeometry, Told};
 use crate::denoc::reduced_tree::Factors;
 use crate::denoc::tree::KinematicTree;
 use crate::linearised_motion::body_block::{BodyBlock, Place, Twist};
@@ -73,54 +74,92 @@ impl LinkStages {
             bodies: &self.bodies,
             at_base: &self.at_base,
             carried: &self.carried,
+            biases: &[],
         };
-        let (tree, limbs) = (&self.tree, &self.tree.limbs);
-        let bodies = self.topology.bodies.len();
-        self.loops.factorise(
-            tree,
-            &factors,
-            |limb| places(&limbs[limb], bodies, derivatives).0,
-            |closure, _| ends(&limbs[tree.closures[closure].limb], derivatives).1,
-            |limb| places(&limbs[limb], bodies, derivatives).1,
-            |limb| chord(tree, limb, derivatives),
-        );
+        let geometry = Linearised {
+            tree: &self.tree,
+            bodies: self.topology.bodies.len(),
+            derivatives,
+        };
+        self.loops
+            .factorise(&self.tree, &factors, &geometry, Some(self.g));
     }
 
-    /// Adds to V and X what the multipliers of the loops do: `self.motions` hold V of bodies and tips.
-    pub(super) fn close_loops(
-        &mut self,
-        derivatives: &Derivatives,
-        r_x: &mut [f64],
-        r_v: &mut [f64],
-    ) {
-        for (index, gap) in self.gaps.iter_mut().enumerate() {
-            let wanted = self.g * self.loops.gap(index, &self.speeds);
-            *gap = self.loops.gap(index, &self.motions) - wanted;
+    /// Takes note of how far r_x, in `self.motions`, moves tips from their places.
+    pub(super) fn note_given_gaps(&mut self) {
+        for (index, given_m) in self.given_gaps_m.iter_mut().enumerate() {
+            *given_m = self.loops.gap(index, &self.motions);
         }
-        self.loops.close(&self.gaps, None);
-        self.body_loads.fill(Twist::default());
-        self.flows.fill(DVec3::ZERO);
-        self.loads.fill(DVec3::ZERO);
-        self.loops.add_loads(&mut self.body_loads);
-        self.sweep_inward(derivatives);
-        let g = self.g;
-        self.sweep_outward(derivatives, |at, v| {
-            let x = DVec3::from_slice(&r_x[at..]) + g * v;
-            let v = DVec3::from_slice(&r_v[at..]) + v;
-            x.write_to_slice(&mut r_x[at..]);
-            v.write_to_slice(&mut r_v[at..]);
-        });
+    }
+
+    /// Finds the multipliers of the loops and sweeps them inward, on top of the loads of the stage:
+    /// `self.motions` hold V of bodies and tips without them.
+    pub(super) fn close_loops(&mut self, derivatives: &Derivatives) {
+        let moved = self.moved_gaps.iter_mut();
+        for (index, (gap, moved)) in self.gaps.iter_mut().zip(moved).enumerate() {
+            *moved = self.loops.gap(index, &self.motions);
+            *gap = *moved - self.g * self.loops.gap(index, &self.speeds);
+        }
+        self.loops.close(
+            &self.gaps,
+            Told::Stage(&self.moved_gaps, &self.given_gaps_m),
+        );
+        self.loops.add_loads(&mut self.tip_loads);
+        for limb in self.tree.limbs.iter().rev() {
+            let child = limb.child;
+            let load = std::mem::take(&mut self.tip_loads[child]);
+            let bias = self.bodies[child].inward(-load, DVec3::ZERO);
+            self.body_biases[child] = self.body_biases[child].plus(&bias);
+            let mut force = bias.passed_on;
+            for link in limb.links.clone().rev() {
+                let bias = self.links[link].inward(force, 0.0);
+                self.biases[link] = self.biases[link].plus(&bias);
+                force = bias.passed_on;
+            }
+            if let Some(parent) = limb.parent {
+                let push = self.places(limb, derivatives).0.load(force);
+                self.tip_loads[parent].linear -= push.linear;
+                self.tip_loads[parent].angular -= push.angular;
+            }
+        }
+        for &base in &self.tree.bases {
+            let load = std::mem::take(&mut self.tip_loads[base]);
+            self.body_loads[base].linear += load.linear;
+            self.body_loads[base].angular += load.angular;
+        }
     }
 }
 
-/// The chord of a limb, its length (m) and whether it is rigid.
-fn chord(tree: &KinematicTree, limb: usize, derivatives: &Derivatives) -> (DVec3, f64, bool) {
-    let (limb, kind) = (&tree.limbs[limb], &tree.kinds[limb]);
-    let span = |k: usize| {
-        let segment = &derivatives.segments[limb.segment(k)];
-        limb.sign() * segment.length_m * segment.direction
-    };
-    let chord_m = (0..limb.links.len()).map(span).sum();
-    let length_m = kind.length_m * limb.links.len() as f64;
-    (chord_m, length_m, kind.stretch == Stretch::Rigid)
+/// Where limbs stand in a linearised motion.
+struct Linearised<'a> {
+    tree: &'a KinematicTree,
+    /// Number of bodies, loose nodes and tips not counted.
+    bodies: usize,
+    derivatives: &'a Derivatives,
+}
+
+impl LoopGeometry for Linearised<'_> {
+    fn proximal(&self, limb: usize) -> Place {
+        places(&self.tree.limbs[limb], self.bodies, self.derivatives).0
+    }
+
+    fn distal(&self, limb: usize) -> Place {
+        places(&self.tree.limbs[limb], self.bodies, self.derivatives).1
+    }
+
+    fn tie(&self, closure: usize, _: usize) -> Place {
+        let limb = self.tree.closures[closure].limb;
+        ends(&self.tree.limbs[limb], self.derivatives).1
+    }
+
+    fn chord(&self, limb: usize) -> (DVec3, f64, bool) {
+        let (limb, kind) = (&self.tree.limbs[limb], &self.tree.kinds[limb]);
+        let span = |k: usize| {
+            let segment = &self.derivatives.segments[limb.segment(k)];
+            limb.sign() * segment.length_m * segment.direction
+        };
+        let chord_m = (0..limb.links.len()).map(span).sum();
+        let length_m = kind.length_m * limb.links.len() as f64;
+        (chord_m, length_m, kind.stretch == Stretch::Rigid)
+    }
 }

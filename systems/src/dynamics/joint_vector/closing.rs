@@ -11,16 +11,20 @@ use glam::DVec3;
 
 use super::JointVector;
 use crate::denoc::articulated_link::Stretch;
-use crate::denoc::closed_dynamics::{ClosedDynamics, gaps};
+use crate::denoc::closed_dynamics::{ClosedDynamics, Motion, gaps};
 use crate::denoc::joint_coordinates::LinkChart;
 use crate::denoc::tree::KinematicTree;
 use crate::dynamics::link_mechanism::LinkMechanism;
 use crate::dynamics::rotation_chart::exponential;
+use crate::integration::Correction;
 
 /// Gaps (m, m/s) below this are left as they are: round-off of altitudes is near.
 const CLOSED: f64 = 1e-10;
-/// Gaps that a projection leaves are below this, m, or as small as it can make them.
-const TIGHT_M: f64 = 1e-12;
+/// Gaps that a projection leaves are below this (m, m/s): what round-off of altitudes allows on Venus.
+const TIGHT: f64 = 3e-11;
+/// Gaps below this (m, m/s) are closed without evaluating the state anew between steps: its rates change by as
+/// little, and a step that starts from them errs by less than it does itself.
+const SMALL: f64 = 1e-6;
 const PASSES_AFTER_STEP: usize = 8;
 const PASSES_AT_START: usize = 50;
 
@@ -60,9 +64,14 @@ impl JointVector {
         }
         let mut dynamics = mechanism.dynamics.clone();
         for _ in 0..PASSES_AT_START {
+            let motion = Motion {
+                links: &self.links,
+                bodies: &self.components.bodies,
+                ties: &[],
+            };
             let solved = dynamics.solve(
                 &mechanism.tree,
-                (&self.links, &self.components.bodies),
+                motion,
                 &mechanism.entities.offsets,
                 &mechanism.loads,
                 &mut self.change,
@@ -71,7 +80,7 @@ impl JointVector {
                 break;
             }
             let (gaps, largest_m) = self.gaps(mechanism, &dynamics, Of::Position);
-            if largest_m <= TIGHT_M {
+            if largest_m <= TIGHT {
                 break;
             }
             dynamics.closing_change(&mechanism.tree, &gaps, &mut self.change);
@@ -81,27 +90,34 @@ impl JointVector {
         self.take_spans();
     }
 
-    /// Closes the loops of an accepted state, whose evaluation was the last one; whether they had opened.
-    pub(super) fn close_after_step(&mut self, world: &mut World) -> bool {
+    /// Closes the loops of an accepted state, whose evaluation was the last one.
+    pub(super) fn close_after_step(&mut self, world: &mut World) -> Correction {
         let mechanism = &mut *world.resource_mut::<LinkMechanism>();
         if mechanism.tree.closures.is_empty() {
-            return false;
+            return Correction::None;
         }
         let mut dynamics = std::mem::take(&mut mechanism.dynamics);
         let positions = self.gaps(mechanism, &dynamics, Of::Position).1;
         let velocities = self.gaps(mechanism, &dynamics, Of::Velocity).1;
-        let has_opened = positions.max(velocities) > CLOSED;
-        if has_opened {
+        let largest = positions.max(velocities);
+        if largest > CLOSED {
             self.project(mechanism, &mut dynamics);
         }
         mechanism.dynamics = dynamics;
-        has_opened
+        match largest {
+            CLOSED..SMALL => {
+                self.components.write(world, &self.links);
+                Correction::Slight
+            }
+            SMALL.. => Correction::Large,
+            _ => Correction::None,
+        }
     }
 
     fn project(&mut self, mechanism: &LinkMechanism, dynamics: &mut ClosedDynamics) {
         for _ in 0..PASSES_AFTER_STEP {
             let (gaps, largest_m) = self.gaps(mechanism, dynamics, Of::Position);
-            if largest_m <= TIGHT_M {
+            if largest_m <= TIGHT {
                 break;
             }
             dynamics.closing_change(&mechanism.tree, &gaps, &mut self.change);
@@ -110,7 +126,7 @@ impl JointVector {
         }
         for _ in 0..PASSES_AFTER_STEP {
             let (gaps, largest_m_s) = self.gaps(mechanism, dynamics, Of::Velocity);
-            if largest_m_s <= TIGHT_M {
+            if largest_m_s <= TIGHT {
                 break;
             }
             dynamics.closing_change(&mechanism.tree, &gaps, &mut self.change);
