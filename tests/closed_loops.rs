@@ -208,3 +208,54 @@ fn light_bodies_close_heavy_loops() {
         assert_below("lengths", worst.fold(0.0, f64::max), 1e-8);
     }
 }
+
+/// Four rigid tethers are redundant by one, and a body that swings and turns below them makes them stretch: as
+/// springs do that pull and push, up to what the other three stretch besides, which goes with 1/EA; in every
+/// integrator.
+#[test]
+fn redundant_tethers_stretch_as_springs_do() {
+    let scene = |stiffness_n: f64| {
+        format!(
+            r#"(
+    name: "four", environment: (gravity: Constant(8.87), atmosphere: Vacuum),
+    entities: {{
+        "anchor": (Fixed: (position_m: (0, 0, 1000))),
+        "body": (
+            Body: (mass_kg: 10, inertia: Box(1, 1, 0.5)),
+            Motion: (velocity_m_s: (3, 1, 0), rate_rad_s: (0, 0, 1.5)),
+        ),
+        "ring": (Tethers: (
+            count: 4, from_radius_m: 0.5, to_radius_m: 0.5, from: ("anchor", Centre), to: ("body", Top),
+            length_m: 10, nodes: 0, axial_stiffness_n: {stiffness_n}, damping_n_s_m: 10, slack: false,
+        )),
+    }},
+    run: (formulation: Denoc, duration_s: 5, output_every_s: 0.1),
+)"#
+        )
+    };
+    let rigid = |stiffness_n: f64, integrator: &str| {
+        let integrator = format!("run.integrator={integrator}");
+        fly(&scene(stiffness_n), &[&integrator])
+    };
+    let differences_m = [5e4, 5e5].map(|stiffness_n| {
+        let springs = fly(
+            &scene(stiffness_n),
+            &[
+                "run.formulation=LumpedMass",
+                "run.integrator=Adaptive(relative_tolerance: 1e-9)",
+            ],
+        );
+        let links = rigid(stiffness_n, "Adaptive(relative_tolerance: 1e-9)");
+        for integrator in ["Auto()", "Implicit()", "Fixed(step_s: 0.01)"] {
+            let other = rigid(stiffness_n, integrator);
+            assert_below(integrator, largest_distance_m(&other, &links), 1e-3);
+        }
+        largest_distance_m(&links, &springs)
+    });
+    println!("EA x 1, 10: {differences_m:?} m");
+    assert_below("EA x 10", differences_m[1], 1e-3);
+    assert!(
+        differences_m[1] < 0.2 * differences_m[0],
+        "{differences_m:?}"
+    );
+}

@@ -128,7 +128,8 @@ fn check_base(scene: &Scene, report: &mut FieldReport) {
     }
 }
 
-/// Rigid links are stretched by loops that cannot stay closed: more than this part of their length is told.
+/// Rigid links are stretched where redundant tethers cannot all keep their lengths: more than this part of it is
+/// told.
 const STRAINED: f64 = 1e-5;
 
 /// Logs when redundant tethers first cannot all keep their lengths.
@@ -150,8 +151,9 @@ fn log_strain(
             let part = format!("{}/{}", name.0, segment.number);
             events.add(clock.time_s, "strained", &part);
             warnings.0.push(format!(
-                "the rigid link `{part}` is {stretch_m:.6} m too long at {} s: redundant tethers cannot all keep \
-                 their lengths in this motion; `run.elastic_links: true` or `LumpedMass` lets them stretch",
+                "the rigid link `{part}` is stretched by {stretch_m:.6} m at {} s: redundant tethers cannot all keep \
+                 their lengths in this motion, and give way by their stiffness; `LumpedMass` lets all of them \
+                 stretch, and go slack",
                 clock.time_s
             ));
         }
