@@ -9,9 +9,9 @@
 
 mod flight;
 
-use aerobot::engine::recording::frame::{Frame, MemorySink};
-use flight::{assert_below, assert_relative, fly, position, summary_of};
-use glam::DVec3;
+use aerobot::engine::recording::frame::Frame;
+use flight::dumbbell::{assert_conserved, dumbbell};
+use flight::{assert_below, assert_relative, channel, fly, position, summary_of, velocity};
 
 const G: f64 = 8.87;
 
@@ -33,26 +33,6 @@ fn hanging(events: &str, environment: &str, more: &str, run: &str) -> String {
     run: ({run}),
 )"#
     )
-}
-
-fn velocity(results: &MemorySink, entity: &str, time_s: f64) -> DVec3 {
-    let frame = frame_at(results, time_s);
-    let row = frame.states.iter().find(|row| &*row.entity == entity);
-    row.unwrap().velocity_m_s
-}
-
-fn frame_at(results: &MemorySink, time_s: f64) -> &Frame {
-    let mut frames = results.frames.iter();
-    frames
-        .find(|frame| (frame.time_s - time_s).abs() < 1e-9)
-        .unwrap()
-}
-
-fn channel(frame: &Frame, entity: &str, name: &str) -> f64 {
-    let mut rows = frame.channels.iter();
-    rows.find(|row| &*row.entity == entity && row.channel == name)
-        .unwrap()
-        .value
 }
 
 /// Released from rest, a body falls: v = g t without air; with drag v = v_t tanh(g t / v_t), which for the
@@ -103,27 +83,11 @@ fn a_released_sphere_falls_through_air() {
 /// angular momentum and all energy but that of the cut segment.
 #[test]
 fn a_cut_conserves_momentum_and_angular_momentum() {
-    let text = r#"(
-    name: "dumbbell",
-    environment: (gravity: Constant(0), atmosphere: Vacuum),
-    entities: {
-        "a": (Body: (mass_kg: 4), Pose: (position_m: (0, 0, 100)), Motion: (velocity_m_s: (3, 0.5, 0.2))),
-        "b": (Body: (mass_kg: 7), Pose: (position_m: (0, 0, 0)), Motion: (velocity_m_s: (-1, 0.3, 0))),
-        "tether": (
-            Tether: (
-                from: ("a", Centre), to: ("b", Centre), length_m: 99.5, nodes: 6, diameter_m: 0.002,
-                density_kg_m3: 1440, axial_stiffness_n: 5e3, damping_n_s_m: 5, slack: false, start: Straight,
-            ),
-            Motion: (velocity_m_s: (1, 0.4, 0.1)),
-        ),
-    },
-    events: [(at_s: 2.5, do: Cut(tether: "tether", segment: 4))],
-    run: (
-        duration_s: 5, output_every_s: 0.5, integrator: Adaptive(relative_tolerance: 1e-11),
-        record: (channels: Only({"system": ["mechanical_energy_j", "nonconservative_work_j"]})),
-    ),
-)"#;
-    let (results, summary) = summary_of(text, &[]);
+    let text = dumbbell(
+        "length_m: 99.5, axial_stiffness_n: 5e3, damping_n_s_m: 5, slack: false,",
+        r#"record: (channels: Only({"system": ["mechanical_energy_j", "nonconservative_work_j"]}))"#,
+    );
+    let (results, summary) = summary_of(&text, &[]);
     let [cut] = summary
         .events
         .iter()
@@ -133,28 +97,7 @@ fn a_cut_conserves_momentum_and_angular_momentum() {
         panic!("{:?}", summary.events);
     };
     assert_eq!((cut.time_s, cut.entity.as_str()), (2.5, "tether/4"));
-    let segment_kg = 1440.0 * std::f64::consts::PI * 1e-6 * 99.5 / 7.0;
-    let sums = |frame: &Frame| {
-        let mut momentum = DVec3::ZERO;
-        let mut angular = DVec3::ZERO;
-        for row in &frame.states {
-            let mass_kg = match &*row.entity {
-                "a" => 4.0 + 0.5 * segment_kg,
-                "b" => 7.0 + 0.5 * segment_kg,
-                _ => segment_kg,
-            };
-            momentum += mass_kg * row.velocity_m_s;
-            angular += row.position_m.cross(mass_kg * row.velocity_m_s);
-        }
-        (momentum, angular)
-    };
-    let start = sums(&results.frames[0]);
-    for frame in &results.frames {
-        let (momentum, angular) = sums(frame);
-        let what = format!("at {} s", frame.time_s);
-        assert_below(&what, momentum.distance(start.0) / start.0.length(), 1e-12);
-        assert_below(&what, angular.distance(start.1) / start.1.length(), 1e-10);
-    }
+    assert_conserved(&results, 99.5, [1e-12, 1e-10]);
     let balance = |frame: &Frame| {
         channel(frame, "system", "mechanical_energy_j")
             - channel(frame, "system", "nonconservative_work_j")

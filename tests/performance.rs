@@ -17,6 +17,7 @@ use aerobot::reproduce::ReproduceError;
 use aerobot::reproduce::performance::{
     Costs, Extent, Measured, PerformanceSettings, SOLVERS, Solver, measure, power_law,
 };
+use program::reproduced::{assert_kept, assert_listed, assert_refused, assert_tables};
 use program::{Scratch, aerobot, text};
 
 const LUMPED_EXPLICIT: Solver = SOLVERS[0];
@@ -183,23 +184,17 @@ fn the_command_writes_its_tables() {
         assert!(printed.contains(wanted), "{printed}");
     }
     // Sizes x solvers, with a header; steps, evaluations and what limits them, of two ranges.
-    for (file, rows) in [
-        ("performance_elements.csv", 5 * 4),
-        ("performance_length.csv", 8 * 4),
-        ("performance_exponents.csv", 2 * 16),
-        ("performance_timing.csv", 13 * 4),
-        ("performance_timing_exponents.csv", 2 * 8),
-    ] {
-        let table = read(&scratch, file);
-        let lines: Vec<&str> = table.lines().collect();
-        let columns = lines[0].split(',').count();
-        assert_eq!(lines.len(), rows + 1, "{file}");
-        assert!(lines.iter().all(|line| line.split(',').count() == columns));
-        assert!(!table.contains("NaN") && !table.contains("inf"), "{file}");
-    }
-    let again = aerobot(&[&SHORT[..], &["--out", out]].concat());
-    assert_eq!(again.status.code(), Some(2));
-    assert!(text(&again.stderr).contains("--force"));
+    assert_tables(
+        &scratch,
+        &[
+            ("performance_elements.csv", 5 * 4),
+            ("performance_length.csv", 8 * 4),
+            ("performance_exponents.csv", 2 * 16),
+            ("performance_timing.csv", 13 * 4),
+            ("performance_timing_exponents.csv", 2 * 8),
+        ],
+    );
+    assert_kept(&SHORT, out);
 }
 
 #[test]
@@ -222,10 +217,8 @@ fn tables_without_a_clock_have_the_same_bytes_again() {
 
 #[test]
 fn what_makes_no_sense_is_refused_and_nothing_is_written() {
-    let scratch = Scratch::new();
-    let out = scratch.text();
-    for (arguments, message) in [
-        (&["performence"][..], "did you mean `performance`?"),
+    assert_refused(&[
+        (&["performence"], "did you mean `performance`?"),
         (&["performance", "--nodes", "1"], "must be at least 2"),
         (&["performance", "--nodes", "-1"], "invalid value"),
         (
@@ -233,13 +226,6 @@ fn what_makes_no_sense_is_refused_and_nothing_is_written() {
             "`duration_s` must be above",
         ),
         (&["performance", "--until", "NaN"], "duration_s"),
-    ] {
-        let output = aerobot(&[&["reproduce", "--out", out], arguments].concat());
-        let said = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
-        assert!(said.contains(message), "{arguments:?}: {said}");
-        assert!(!scratch.0.exists(), "{arguments:?}");
-    }
-    let listed = text(&aerobot(&["reproduce", "--list"]).stdout);
-    assert!(listed.lines().any(|line| line.starts_with("performance ")));
+    ]);
+    assert_listed("performance");
 }

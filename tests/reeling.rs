@@ -13,7 +13,7 @@ use aerobot::components::state::{Mass, Position, Velocity};
 use aerobot::engine::plugin::Simulator;
 use aerobot::engine::recording::frame::{Frame, MemorySink};
 use aerobot::engine::simulation::Simulation;
-use flight::{assert_below, assert_relative, fly, load, position, summary_of};
+use flight::{assert_below, assert_relative, channel, fly, frame_at, load, position, summary_of};
 use glam::DVec3;
 
 const G: f64 = 8.87;
@@ -39,20 +39,6 @@ fn on_massless_line(length_m: f64, start: &str, reel: &str, run: &str) -> String
     run: ({run}),
 )"#
     )
-}
-
-fn frame_at(results: &MemorySink, time_s: f64) -> &Frame {
-    let mut frames = results.frames.iter();
-    frames
-        .find(|frame| (frame.time_s - time_s).abs() < 1e-9)
-        .unwrap()
-}
-
-fn channel(frame: &Frame, entity: &str, name: &str) -> f64 {
-    let mut rows = frame.channels.iter();
-    rows.find(|row| &*row.entity == entity && row.channel == name)
-        .unwrap()
-        .value
 }
 
 /// Length and its rate at 1 s and 4 s of m L'' = m g - EA (L/L0 - 1) - c' d(L/L0)/dt from rest in

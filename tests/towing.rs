@@ -23,6 +23,7 @@ use aerobot::reproduce::towing::{TowingSettings, WindResult, compare};
 use aerobot::systems::towed_cable::{Conditions, Line, StaticShape, TowedBody, TowedCable};
 use flight::{assert_below, owned, scene_file};
 use glam::DVec3;
+use program::reproduced::{assert_kept, assert_listed, assert_refused, assert_tables};
 use program::{Scratch, aerobot, text};
 
 /// Where the probe of the scene rests, m, with overrides.
@@ -263,46 +264,27 @@ fn the_command_writes_its_tables_once() {
         assert!(printed.replace('\n', " ").contains(wanted), "{printed}");
     }
     // Winds x models x (points | top and segments), with a header.
-    for (file, rows) in [
-        ("towing.csv", 6),
-        ("towing_shapes.csv", 6 * 3 * 6),
-        ("towing_tension.csv", 6 * 3 * 6),
-    ] {
-        let table = fs::read_to_string(scratch.0.join(file)).unwrap();
-        let lines: Vec<&str> = table.lines().collect();
-        let columns = lines[0].split(',').count();
-        assert_eq!(lines.len(), rows + 1, "{file}");
-        assert!(lines.iter().all(|line| line.split(',').count() == columns));
-        assert!(!table.contains("NaN") && !table.contains("inf"), "{file}");
-    }
-    let again = aerobot(&[&short[..], &["--out", out]].concat());
-    assert_eq!(again.status.code(), Some(2));
-    assert!(text(&again.stderr).contains("--force"));
-    let quiet = aerobot(&[&short[..], &["--out", out, "--force", "--quiet"]].concat());
-    assert_eq!(quiet.status.code(), Some(0));
-    assert!(quiet.stdout.is_empty() && quiet.stderr.is_empty());
+    assert_tables(
+        &scratch,
+        &[
+            ("towing.csv", 6),
+            ("towing_shapes.csv", 6 * 3 * 6),
+            ("towing_tension.csv", 6 * 3 * 6),
+        ],
+    );
+    assert_kept(&short, out);
 }
 
 #[test]
 fn what_cannot_be_reproduced_is_refused_and_nothing_is_written() {
-    let scratch = Scratch::new();
-    let out = scratch.text();
-    for (arguments, message) in [
-        (&["towin"][..], "did you mean `towing`?"),
+    assert_refused(&[
+        (&["towin"], "did you mean `towing`?"),
         (&["towing", "--nodes", "1"], "2 nodes or more"),
         (&["towing", "--nodes", "-1"], "invalid value"),
         (&["towing", "--until", "0"], "`duration_s` must be above"),
         (&["towing", "--until", "NaN"], "duration_s"),
-    ] {
-        let output = aerobot(&[&["reproduce", "--out", out], arguments].concat());
-        let said = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
-        assert!(said.contains(message), "{arguments:?}: {said}");
-        assert!(!scratch.0.exists(), "{arguments:?}");
-    }
-    let listed = aerobot(&["reproduce", "--list"]);
-    let names = text(&listed.stdout);
-    assert!(names.lines().any(|line| line.starts_with("towing ")));
+    ]);
+    assert_listed("towing");
 }
 
 #[test]

@@ -17,6 +17,7 @@ use std::fs;
 use aerobot::engine::plugin::Simulator;
 use aerobot::reproduce::yaw::{LengthResult, YawSettings, study};
 use flight::{assert_below, assert_relative, fly_scene};
+use program::reproduced::{assert_kept, assert_listed, assert_refused, assert_tables};
 use program::{Scratch, aerobot, text};
 
 const SCENE: &str = "paper/multi_tether_yaw.ron";
@@ -245,20 +246,8 @@ fn the_command_writes_its_tables() {
         assert!(printed.contains(wanted), "{wanted}: {printed}");
     }
     // Lengths x formulations (x outputs), with a header.
-    for (file, rows) in [("yaw.csv", 6), ("yaw_headings.csv", 6 * 281)] {
-        let table = fs::read_to_string(scratch.path(file)).unwrap();
-        let lines: Vec<&str> = table.lines().collect();
-        let columns = lines[0].split(',').count();
-        assert_eq!(lines.len(), rows + 1, "{file}");
-        assert!(lines.iter().all(|line| line.split(',').count() == columns));
-        assert!(!table.contains("NaN") && !table.contains("inf"), "{file}");
-    }
-    let again = aerobot(&[&short[..], &["--out", out]].concat());
-    assert_eq!(again.status.code(), Some(2));
-    assert!(text(&again.stderr).contains("--force"));
-    let quiet = aerobot(&[&short[..], &["--out", out, "--force", "--quiet"]].concat());
-    assert_eq!(quiet.status.code(), Some(0));
-    assert!(quiet.stdout.is_empty() && quiet.stderr.is_empty());
+    assert_tables(&scratch, &[("yaw.csv", 6), ("yaw_headings.csv", 6 * 281)]);
+    assert_kept(&short, out);
 }
 
 /// What is too short for a period, or for 15 s, has no figure.
@@ -287,21 +276,12 @@ fn a_short_run_tells_no_frequency() {
 
 #[test]
 fn what_makes_no_sense_is_refused_and_nothing_is_written() {
-    let scratch = Scratch::new();
-    let out = scratch.text();
-    for (arguments, message) in [
-        (&["yav"][..], "did you mean `yaw`?"),
+    assert_refused(&[
+        (&["yav"], "did you mean `yaw`?"),
         (&["yaw", "--nodes", "0"], "has no node to put the mass"),
         (&["yaw", "--nodes", "-1"], "invalid value"),
         (&["yaw", "--until", "0"], "`duration_s` must be above"),
         (&["yaw", "--until", "NaN"], "duration_s"),
-    ] {
-        let output = aerobot(&[&["reproduce", "--out", out], arguments].concat());
-        let said = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
-        assert!(said.contains(message), "{arguments:?}: {said}");
-        assert!(!scratch.0.exists(), "{arguments:?}");
-    }
-    let listed = text(&aerobot(&["reproduce", "--list"]).stdout);
-    assert!(listed.lines().any(|line| line.starts_with("yaw ")));
+    ]);
+    assert_listed("yaw");
 }

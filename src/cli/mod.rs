@@ -5,6 +5,7 @@
 mod check;
 mod compare;
 mod comparison_text;
+mod finding;
 mod modes;
 mod progress;
 mod reproduce;
@@ -147,15 +148,13 @@ struct ReproduceArguments {
     quiet: bool,
 }
 
+/// What commands take that find something about a scene, and may write it to a file.
 #[derive(Args)]
-struct TrimArguments {
+struct FindArguments {
     /// The scene, a RON file.
     scene: PathBuf,
     #[command(flatten)]
     overrides: SceneArguments,
-    /// File for the scene that starts in its steady state.
-    #[arg(long, value_name = "FILE")]
-    out: Option<PathBuf>,
     /// Overwrite a file that exists.
     #[arg(long)]
     force: bool,
@@ -165,23 +164,24 @@ struct TrimArguments {
 }
 
 #[derive(Args)]
-struct ModesArguments {
-    /// The scene, a RON file.
-    scene: PathBuf,
+struct TrimArguments {
     #[command(flatten)]
-    overrides: SceneArguments,
+    find: FindArguments,
+    /// File for the scene that starts in its steady state.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+struct ModesArguments {
+    #[command(flatten)]
+    find: FindArguments,
     /// Number of modes, the slowest first.
     #[arg(long, value_name = "K", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=1000))]
     count: u32,
     /// CSV file for all numbers.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Overwrite a file that exists.
-    #[arg(long)]
-    force: bool,
-    /// Print nothing but errors and warnings.
-    #[arg(long)]
-    quiet: bool,
 }
 
 impl SceneArguments {

@@ -6,42 +6,26 @@ use std::process::ExitCode;
 
 use aerobot_engine::modes::{Mode, Modes, ModesRequest};
 use aerobot_engine::plugin::Simulator;
-use aerobot_engine::trim::scene_file::check_target;
 
-use super::{ModesArguments, REFUSED, complain, say};
+use super::ModesArguments;
+use super::finding::{self, Found};
 
 /// Smaller shares are not printed; they are in the file.
 const LEAST_SHARE: f64 = 0.005;
 
 pub(super) fn modes(simulator: &Simulator, arguments: &ModesArguments) -> ExitCode {
-    match find_and_write(simulator, arguments) {
-        Ok(found) => {
-            for warning in &found.trim.warnings {
-                complain(format_args!("warning: {warning}"));
-            }
-            if !arguments.quiet {
-                say(describe(&found).trim_end());
-                if let Some(file) = &arguments.out {
-                    say(format_args!("all numbers: `{}`", file.display()));
-                }
-            }
-            ExitCode::SUCCESS
-        }
-        Err(message) => {
-            complain(message);
-            ExitCode::from(REFUSED)
-        }
-    }
+    let out = arguments.out.as_deref();
+    let found = find_and_write(simulator, arguments).map(|found| Found {
+        text: describe(&found),
+        warnings: found.trim.warnings,
+        written: "all numbers",
+    });
+    finding::tell(found, &arguments.find, out)
 }
 
 fn find_and_write(simulator: &Simulator, arguments: &ModesArguments) -> Result<Modes, String> {
-    if let Some(file) = &arguments.out {
-        check_target(file, arguments.force).map_err(|error| error.to_string())?;
-    }
-    let scene = simulator
-        .load(&arguments.scene, &arguments.overrides.as_overrides())
-        .map_err(|error| error.to_string())?;
-    let mut simulation = simulator.build(&scene).map_err(|error| error.to_string())?;
+    let out = arguments.out.as_deref();
+    let (scene, mut simulation) = finding::build(simulator, &arguments.find, out)?;
     let request = ModesRequest {
         count: arguments.count as usize,
         ..ModesRequest::default()
@@ -49,7 +33,7 @@ fn find_and_write(simulator: &Simulator, arguments: &ModesArguments) -> Result<M
     let found = simulation
         .modes(&scene, &request)
         .map_err(|error| error.to_string())?;
-    if let Some(file) = &arguments.out {
+    if let Some(file) = out {
         fs::write(file, table(&found))
             .map_err(|error| format!("error: cannot write `{}`: {error}", file.display()))?;
     }

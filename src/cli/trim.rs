@@ -4,46 +4,31 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use aerobot_engine::plugin::Simulator;
-use aerobot_engine::trim::scene_file::{check_target, write_trimmed_scene};
+use aerobot_engine::trim::scene_file::write_trimmed_scene;
 use aerobot_engine::trim::{Residual, Trim, TrimmedBody, TrimmedEnd, TrimmedSystem, TrimmedTether};
 use glam::DVec3;
 
-use super::{REFUSED, TrimArguments, complain, say};
+use super::TrimArguments;
+use super::finding::{self, Found};
 
 pub(super) fn trim(simulator: &Simulator, arguments: &TrimArguments) -> ExitCode {
-    match find_and_write(simulator, arguments) {
-        Ok(trim) => {
-            for warning in &trim.warnings {
-                complain(format_args!("warning: {warning}"));
-            }
-            if !arguments.quiet {
-                say(describe(&trim).trim_end());
-                if let Some(file) = &arguments.out {
-                    say(format_args!("starts there: `{}`", file.display()));
-                }
-            }
-            ExitCode::SUCCESS
-        }
-        Err(message) => {
-            complain(message);
-            ExitCode::from(REFUSED)
-        }
-    }
+    let out = arguments.out.as_deref();
+    let found = find_and_write(simulator, arguments).map(|trim| Found {
+        text: describe(&trim),
+        warnings: trim.warnings,
+        written: "starts there",
+    });
+    finding::tell(found, &arguments.find, out)
 }
 
 /// Finds the steady state, and writes the scene that starts there if one is asked for.
 fn find_and_write(simulator: &Simulator, arguments: &TrimArguments) -> Result<Trim, String> {
-    if let Some(file) = &arguments.out {
-        check_target(file, arguments.force).map_err(|error| error.to_string())?;
-    }
-    let scene = simulator
-        .load(&arguments.scene, &arguments.overrides.as_overrides())
-        .map_err(|error| error.to_string())?;
-    let mut simulation = simulator.build(&scene).map_err(|error| error.to_string())?;
+    let (find, out) = (&arguments.find, arguments.out.as_deref());
+    let (scene, mut simulation) = finding::build(simulator, find, out)?;
     let trim = simulation.trim(&scene).map_err(|error| error.to_string())?;
-    if let Some(file) = &arguments.out {
-        let folder = arguments.scene.parent().unwrap_or_else(|| Path::new("."));
-        write_trimmed_scene(&scene, &trim, folder, file, arguments.force)
+    if let Some(file) = out {
+        let folder = find.scene.parent().unwrap_or_else(|| Path::new("."));
+        write_trimmed_scene(&scene, &trim, folder, file, find.force)
             .map_err(|error| error.to_string())?;
     }
     Ok(trim)

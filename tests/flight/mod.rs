@@ -2,10 +2,13 @@
 
 #![allow(dead_code, reason = "every test file uses its own part")]
 
+pub(crate) mod dumbbell;
+pub(crate) mod torsional_pendulum;
+
 use std::path::{Path, PathBuf};
 
 use aerobot::engine::plugin::Simulator;
-use aerobot::engine::recording::frame::MemorySink;
+use aerobot::engine::recording::frame::{Frame, MemorySink, StateRow};
 use aerobot::engine::recording::summary::Summary;
 use aerobot::engine::scene::Scene;
 use glam::DVec3;
@@ -87,19 +90,36 @@ pub(crate) fn assert_below(what: &str, error: f64, bound: f64) {
     assert!(error < bound, "{what}: {error:.3e}, allowed {bound:.1e}");
 }
 
+/// What was recorded at a time.
+pub(crate) fn frame_at(results: &MemorySink, time_s: f64) -> &Frame {
+    let mut frames = results.frames.iter();
+    frames
+        .find(|frame| (frame.time_s - time_s).abs() < 1e-9)
+        .unwrap_or_else(|| panic!("nothing was recorded at {time_s} s"))
+}
+
+fn state_at<'a>(results: &'a MemorySink, entity: &str, time_s: f64) -> &'a StateRow {
+    let mut rows = frame_at(results, time_s).states.iter();
+    rows.find(|row| &*row.entity == entity)
+        .unwrap_or_else(|| panic!("`{entity}` was not recorded"))
+}
+
 /// Where an entity is at a time, m.
 pub(crate) fn position(results: &MemorySink, entity: &str, time_s: f64) -> DVec3 {
-    let frame = results
-        .frames
-        .iter()
-        .find(|frame| (frame.time_s - time_s).abs() < 1e-9)
-        .unwrap_or_else(|| panic!("nothing was recorded at {time_s} s"));
-    frame
-        .states
-        .iter()
-        .find(|row| &*row.entity == entity)
-        .unwrap_or_else(|| panic!("`{entity}` was not recorded"))
-        .position_m
+    state_at(results, entity, time_s).position_m
+}
+
+/// How it moves, m/s.
+pub(crate) fn velocity(results: &MemorySink, entity: &str, time_s: f64) -> DVec3 {
+    state_at(results, entity, time_s).velocity_m_s
+}
+
+/// The value of a channel of an entity.
+pub(crate) fn channel(frame: &Frame, entity: &str, name: &str) -> f64 {
+    let mut rows = frame.channels.iter();
+    rows.find(|row| &*row.entity == entity && row.channel == name)
+        .unwrap_or_else(|| panic!("`{name}` of `{entity}` was not recorded"))
+        .value
 }
 
 /// Largest distance of anything from where it is in `other`, m.
