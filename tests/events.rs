@@ -215,3 +215,18 @@ fn events_happen_the_same_way_twice() {
         .collect();
     assert!(kinds.contains(&"release"), "{kinds:?}");
 }
+
+/// What would come after the end is said before the run.
+#[test]
+fn an_event_after_the_end_is_told() {
+    let cut = "(at_s: 7, do: Cut(tether: \"tether\"))";
+    let (_, summary) = summary_of(
+        &hanging(cut, "Vacuum", "", "duration_s: 2, output_every_s: 1"),
+        &[],
+    );
+    assert_eq!(
+        summary.warnings,
+        ["`events.0` is to happen at 7 s, and the run ends at 2 s"]
+    );
+    assert!(summary.events.is_empty());
+}

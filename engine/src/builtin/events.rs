@@ -18,7 +18,7 @@ use crate::scene::checks::meant;
 use crate::scene::{Scene, SceneEntity, SetupError};
 use crate::schedule::Phase;
 use crate::topology_change::{Change, apply};
-use crate::world::{Edges, SceneEntities};
+use crate::world::{Edges, SceneEntities, Warnings};
 
 /// Events.
 pub struct EventsPlugin;
@@ -58,8 +58,20 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
             world.entity_mut(body).insert(Air::default());
         }
     }
+    warn_of_late_events(world, scene);
     world.insert_resource(Pending(scene.events.clone()));
     Ok(())
+}
+
+fn warn_of_late_events(world: &mut World, scene: &Scene) {
+    let end_s = scene.run.duration_s;
+    for (index, event) in scene.events.iter().enumerate() {
+        if let Some(at_s) = event.at_s.filter(|at_s| *at_s > end_s) {
+            world.resource_mut::<Warnings>().0.push(format!(
+                "`events.{index}` is to happen at {at_s} s, and the run ends at {end_s} s"
+            ));
+        }
+    }
 }
 
 /// Lets happen what is due, and what that makes due, until nothing is.
