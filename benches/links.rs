@@ -103,6 +103,7 @@ impl Chain {
         };
         let kind = LinkKind {
             length_m: LENGTH_M,
+            length_rate_m_s: 0.0,
             coupling_kg: -ROD_KG / 6.0,
             joint_mass_kg: ROD_KG,
             stretch: Stretch::Rigid,

@@ -64,8 +64,10 @@ pub struct ReeledLine {
 }
 
 /// Marks the segment at a winch, whose unstretched length changes.
-#[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct Reeled {
+    /// The [`ReeledLine`] that has its length.
+    pub line: Entity,
     /// Rate of change of its unstretched length, m/s.
     pub rate_m_s: f64,
     /// The shortest that it becomes, as a part of a nominal segment.

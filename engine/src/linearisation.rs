@@ -4,7 +4,7 @@ use aerobot_components::body::Anchor;
 use aerobot_components::derivatives::{ForceDerivatives, SegmentDerivatives, TorqueDerivatives};
 use aerobot_components::segment::{KelvinVoigt, Segment, SegmentGeometry, Tension};
 use aerobot_components::state::{
-    AddedInertia, Attitude, Force, Inertia, Mass, Position, StateIndex,
+    AddedInertia, Attitude, FirstOrderState, Force, Inertia, Mass, Position, StateIndex,
 };
 use aerobot_components::tether::{Attachment, TetherNode, TetherPoint};
 use aerobot_components::winch::{Reeled, ReeledLine};
@@ -58,7 +58,11 @@ pub(crate) struct Linearisation {
     bodies: QueryState<Bodies, Without<Anchor>>,
     ends: QueryState<(&'static LineEnd, &'static Attachment, &'static Force)>,
     attitudes: QueryState<&'static Attitude>,
-    reels: QueryState<(&'static ReeledLine, &'static FirstOrderIndex)>,
+    reels: QueryState<(
+        &'static ReeledLine,
+        &'static FirstOrderIndex,
+        &'static FirstOrderState,
+    )>,
 }
 
 impl Linearisation {
@@ -167,7 +171,7 @@ impl Linearisation {
     fn linearise_reels(&mut self, world: &World) {
         let derivatives = &mut self.derivatives;
         derivatives.reels.clear();
-        for (line, state) in self.reels.iter_manual(world) {
+        for (line, state, length) in self.reels.iter_manual(world) {
             if let (Some(point), Some(mass)) = (
                 world.get::<TetherPoint>(line.far),
                 world.get::<Mass>(line.far),
@@ -181,6 +185,7 @@ impl Linearisation {
                 derivatives.reels.push(LinearReel {
                     segment: segment.from_point,
                     state: state.0,
+                    length_m: length.value,
                     tension_by_length_n_m: reeled.tension_by_length_n_m,
                 });
             }

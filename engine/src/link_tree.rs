@@ -3,8 +3,9 @@
 use aerobot_components::body::Anchor;
 use aerobot_components::run::LinkMass;
 use aerobot_components::segment::Severed;
-use aerobot_components::state::{Inertia, Mass};
+use aerobot_components::state::{FirstOrderState, Inertia, Mass};
 use aerobot_components::tether::{Attachment, Tether, TetherParts};
+use aerobot_components::winch::{Reeled, ReeledLine};
 use aerobot_systems::denoc::articulated_link::Stretch;
 use aerobot_systems::denoc::kinematics::LimbOffsets;
 use aerobot_systems::denoc::loops::LimbElasticity;
@@ -31,15 +32,16 @@ const AT_ANCHOR_KG: f64 = 1.0;
 
 /// The tree of a world with this topology.
 pub(crate) fn build(world: &World, scene: &Scene, found: &WorldTopology) -> LinkMechanism {
-    let kinds: Vec<LinkKind> = found
-        .tethers
-        .iter()
-        .filter_map(|tether| Some(link_kind(scene, world.get::<Tether>(*tether)?)))
-        .collect();
     let (pieces, loose) = pieces(world, found);
+    let kinds: Vec<LinkKind> = pieces
+        .iter()
+        .filter_map(|piece| link_kind(world, scene, found, piece))
+        .collect();
     let mut turns = turns(world, found);
-    turns.resize(turns.len() + loose.len(), false);
-    let tree = KinematicTree::of_pieces(&pieces, &turns, &kinds, &bases(world, scene, found));
+    let loose_from = turns.len();
+    turns.resize(loose_from + loose.len(), false);
+    let bases = bases(world, scene, found);
+    let tree = KinematicTree::of_pieces(&pieces, (&turns, loose_from), &kinds, &bases);
     turns.resize(tree.carried_by.len(), false);
     let mut entities = TreeEntities {
         bodies: found.bodies.clone(),
@@ -51,17 +53,57 @@ pub(crate) fn build(world: &World, scene: &Scene, found: &WorldTopology) -> Link
     find_ends(world, found, &tree, &mut entities);
     let half_link_kg = |limb: &Limb| {
         let tether = world.get::<Tether>(found.tethers[limb.line]);
-        tether.map_or(0.0, |tether| tether.end_mass_kg(lumping(scene, tether)))
+        match reel(world, found, limb.line, limb.segment(0)) {
+            Some(reel) => 0.5 * reel.line.line_kg_m * reel.length_m,
+            None => tether.map_or(0.0, |tether| tether.end_mass_kg(lumping(scene, tether))),
+        }
     };
     let half_links_kg: Vec<f64> = tree.limbs.iter().map(half_link_kg).collect();
+    for (index, limb) in tree.limbs.iter().enumerate() {
+        if let Some(reel) = reel(world, found, limb.line, limb.segment(0)) {
+            entities.reeled.push((index, reel.entity));
+        }
+    }
     lend_to_tips(world, &tree, &half_links_kg, &mut entities);
     LinkMechanism::new(tree, entities)
 }
 
-fn link_kind(scene: &Scene, tether: &Tether) -> LinkKind {
-    let link_kg = tether.mass_kg() / f64::from(tether.segments());
-    LinkKind {
-        length_m: tether.segment_length_m(),
+/// A line that is reeled at a winch.
+struct Reel {
+    entity: Entity,
+    line: ReeledLine,
+    /// Of the segment at the winch.
+    length_m: f64,
+}
+
+/// The reel at a segment of a tether, given by the index of the segment among all.
+fn reel(world: &World, found: &WorldTopology, line: usize, segment: usize) -> Option<Reel> {
+    let parts = world.get::<TetherParts>(found.tethers[line])?;
+    let number = segment - found.topology.lines[line].first_point;
+    let entity = world.get::<Reeled>(*parts.segments.get(number)?)?.line;
+    Some(Reel {
+        entity,
+        line: *world.get::<ReeledLine>(entity)?,
+        length_m: world.get::<FirstOrderState>(entity)?.value,
+    })
+}
+
+/// What the links of a piece have in common.
+fn link_kind(
+    world: &World,
+    scene: &Scene,
+    found: &WorldTopology,
+    piece: &Piece,
+) -> Option<LinkKind> {
+    let tether = world.get::<Tether>(found.tethers[piece.line])?;
+    let reel = reel(world, found, piece.line, piece.first_point);
+    let length_m = reel
+        .as_ref()
+        .map_or(tether.segment_length_m(), |reel| reel.length_m);
+    let link_kg = tether.mass_kg() / tether.length_m * length_m;
+    Some(LinkKind {
+        length_m,
+        length_rate_m_s: reel.map_or(0.0, |reel| reel.line.rate_m_s),
         coupling_kg: match scene.run.links {
             LinkMass::Rod => -link_kg / 6.0,
             LinkMass::PointMass => 0.0,
@@ -72,7 +114,7 @@ fn link_kind(scene: &Scene, tether: &Tether) -> LinkKind {
         } else {
             Stretch::Rigid
         },
-    }
+    })
 }
 
 /// The bodies from which trees should grow, the most wanted first.
@@ -111,7 +153,8 @@ fn turns(world: &World, found: &WorldTopology) -> Vec<bool> {
         .collect()
 }
 
-/// What is left of the tethers between their severed segments, and the nodes that are loose there.
+/// What is left of the tethers between their severed segments, segments at winches apart, and the nodes that are
+/// loose between these.
 fn pieces(world: &World, found: &WorldTopology) -> (Vec<Piece>, Vec<LooseNode>) {
     let (mut pieces, mut loose) = (Vec::new(), Vec::new());
     let bodies = found.bodies.len();
@@ -146,14 +189,22 @@ fn pieces(world: &World, found: &WorldTopology) -> (Vec<Piece>, Vec<LooseNode>) 
                 });
                 End::OnBody(bodies + place)
             };
-            let (from, to) = (end_at(first, line.from), end_at(last, line.to));
-            if last > first {
+            let is_reeled = |k: &usize| world.get::<Reeled>(parts.segments[*k]).is_some();
+            let mut bounds = vec![first];
+            for reeled in (first..last).filter(is_reeled) {
+                bounds.extend([reeled, reeled + 1]);
+            }
+            bounds.push(last);
+            bounds.dedup();
+            // What is cut off alone is a node by itself.
+            let _ = end_at(first, line.from);
+            for ends in bounds.windows(2) {
                 pieces.push(Piece {
                     line: index,
-                    first_point: line.first_point + first,
-                    links: last - first,
-                    from,
-                    to,
+                    first_point: line.first_point + ends[0],
+                    links: ends[1] - ends[0],
+                    from: end_at(ends[0], line.from),
+                    to: end_at(ends[1], line.to),
                 });
             }
             first = last + 1;
@@ -171,7 +222,7 @@ fn find_ends(
 ) {
     let bodies = found.bodies.len();
     let ties = bodies + entities.loose.len();
-    for limb in &tree.limbs {
+    for (limb, kind) in tree.limbs.iter().zip(&tree.kinds) {
         let tether = found.tethers[limb.line];
         let is_cut = limb.child >= ties;
         let (mut offsets, mut anchor) = (LimbOffsets::default(), None);
@@ -208,8 +259,9 @@ fn find_ends(
         }
         entities.offsets.limbs.push(offsets);
         entities.anchors.push(anchor);
+        let length_m = kind.length_m * limb.links.len() as f64;
         let elasticity = |tether: &Tether| LimbElasticity {
-            compliance_m_n: tether.length_m / tether.axial_stiffness_n,
+            compliance_m_n: length_m / tether.axial_stiffness_n,
             retardation_s: tether.damping_n_s_m * tether.length_m / tether.axial_stiffness_n,
         };
         let rigid = LimbElasticity {

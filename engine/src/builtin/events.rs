@@ -3,7 +3,6 @@
 
 use aerobot_components::body::Body;
 use aerobot_components::events::{Action, Condition, EventSpec};
-use aerobot_components::run::Formulation;
 use aerobot_components::scene_component::FieldReport;
 use aerobot_components::segment::Tension;
 use aerobot_components::state::{Air, Position, Velocity};
@@ -180,13 +179,6 @@ fn check_action(scene: &Scene, action: &Action, report: &mut FieldReport) {
         } => {
             if let Some(found) = check_tether(scene, tether, report) {
                 check_winch(scene, found, (*rate_m_s, *length_m), report);
-            }
-            if scene.run.formulation == Formulation::Denoc {
-                report.add(
-                    "",
-                    "in `Denoc` tethers cannot be reeled during a run",
-                    "use `LumpedMass` (`--formulation lumped-mass`)",
-                );
             }
         }
     }

@@ -7,11 +7,12 @@ use aerobot_components::scene_component::FieldReport;
 use aerobot_components::segment::{RigidLink, Segment, SegmentGeometry, Tension};
 use aerobot_components::state::Mass;
 use aerobot_components::tether::Tether;
+use aerobot_components::winch::Reeled;
 use aerobot_systems::clock::Clock;
 use aerobot_systems::dynamics::links::{accelerate_by_links, add_reactions, solve_links};
 use aerobot_systems::linearised_motion::topology::BodyIndex;
 use bevy_ecs::entity::Entity;
-use bevy_ecs::query::With;
+use bevy_ecs::query::{With, Without};
 use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::system::{Local, Query, Res, ResMut};
 
@@ -137,7 +138,7 @@ fn log_strain(
     clock: Res<Clock>,
     mut events: ResMut<EventLog>,
     mut warnings: ResMut<Warnings>,
-    links: Query<(&Segment, &SegmentGeometry), With<RigidLink>>,
+    links: Query<(&Segment, &SegmentGeometry), (With<RigidLink>, Without<Reeled>)>,
     tethers: Query<(&Tether, &EntityName)>,
     mut seen: Local<BTreeSet<Entity>>,
 ) {

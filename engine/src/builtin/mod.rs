@@ -29,6 +29,7 @@ pub(crate) fn register(simulator: &mut Simulator) {
         .add_plugin(&winches::WinchesPlugin)
         .add_plugin(&bodies::MotionPlugin)
         .add_plugin(&links::LinksPlugin)
+        .add_plugin(&winches::WinchPowerPlugin)
         .add_plugin(&channels::ChannelsPlugin)
         .add_plugin(&slack_events::SlackEventsPlugin)
         .add_plugin(&recorder::RecorderPlugin)

@@ -12,13 +12,14 @@ use aerobot_systems::instruments::winch::{ReelPower, WinchWork, winch_power};
 use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::world::World;
 
+use super::tethers;
 use crate::plugin::{Plugin, Simulator};
 use crate::scene::{Scene, SetupError};
 use crate::schedule::Phase;
 use crate::topology_change::reeling::SHORTEST_PART;
 use crate::world::{SceneEntities, next_spawn_order};
 
-/// Winches, in the formulation of lumped masses.
+/// Winches.
 pub struct WinchesPlugin;
 
 impl Plugin for WinchesPlugin {
@@ -28,22 +29,31 @@ impl Plugin for WinchesPlugin {
             .add_check(check)
             .add_setup(set_up)
             .add_systems_for::<Winch, _, _>(Phase::Prepare, || (pay_out, carry).chain())
-            .add_systems_for::<Winch, _, _>(Phase::Forces, || (reeled_spring, take_up).chain())
-            .add_systems_for::<Winch, _, _>(Phase::Dynamics, || winch_power)
-            .add_systems_for::<Winch, _, _>(Phase::Derivatives, || reeled_spring_derivatives);
+            .add_systems_in(Phase::Forces, has_springs, || reeled_spring)
+            .add_systems_for::<Winch, _, _>(Phase::Forces, || take_up)
+            .add_systems_in(Phase::Derivatives, has_springs, || {
+                reeled_spring_derivatives
+            });
     }
+}
+
+/// The power of winches, once the tensions of rigid links are known.
+pub struct WinchPowerPlugin;
+
+impl Plugin for WinchPowerPlugin {
+    fn build(&self, simulator: &mut Simulator) {
+        simulator.add_systems_for::<Winch, _, _>(Phase::Dynamics, || winch_power);
+    }
+}
+
+/// Whether segments at winches stretch.
+fn has_springs(scene: &Scene, formulation: Formulation) -> bool {
+    scene.with::<Winch>().next().is_some() && tethers::has_springs(scene, formulation)
 }
 
 fn check(scene: &Scene, report: &mut FieldReport) {
     for (entity, _) in scene.with::<Winch>() {
         let path = entity.path::<Winch>();
-        if scene.run.formulation == Formulation::Denoc {
-            report.add(
-                &path,
-                "in `Denoc` tethers keep their length, and there is no winch",
-                "use `LumpedMass` (`--formulation lumped-mass`), or leave the `Winch` out",
-            );
-        }
         if entity
             .get::<Tether>()
             .is_some_and(|tether| tether.torsion.is_some())
@@ -119,10 +129,6 @@ fn mount(
         ))
         .id();
     let far_kg = world.get::<Mass>(far).map_or(0.0, |mass| mass.0);
-    world.entity_mut(segment).insert(Reeled {
-        shortest_part: SHORTEST_PART,
-        ..Reeled::default()
-    });
     let steady = |value| FirstOrderState {
         value,
         rate_per_s: 0.0,
@@ -147,6 +153,12 @@ fn mount(
     let line = world
         .spawn((order, line, ReelPower::default(), steady(nominal_m)))
         .id();
+    world.entity_mut(segment).insert(Reeled {
+        line,
+        rate_m_s: 0.0,
+        shortest_part: SHORTEST_PART,
+        tension_by_length_n_m: 0.0,
+    });
     let order = next_spawn_order(world);
     world.spawn((order, WinchWork(line), steady(0.0)));
 }

@@ -4,9 +4,13 @@
 //! of the line. It takes its mass from the two ends in the proportion in which it lies between them: mass,
 //! momentum and centre of mass stay as they are, and so does the strain. A node that is taken away gives its
 //! mass and momentum to its neighbours; to a body as an impulse at the attachment.
+//!
+//! Rigid links then take what they do not allow by impulses of their own ([`crate::restructure`]): the part beyond
+//! a new node keeps its length from there on, and a line that is bent where two links become one is straight
+//! there, which moves what hangs on it.
 
 use aerobot_components::body::Anchor;
-use aerobot_components::segment::KelvinVoigt;
+use aerobot_components::segment::{KelvinVoigt, RigidLink};
 use aerobot_components::state::{
     AddedInertia, AngularVelocity, Attitude, FirstOrderState, Inertia, Mass, Position, Velocity,
 };
@@ -42,6 +46,9 @@ pub(super) fn divide(world: &mut World, line: Entity) {
     let node = spawn_node(world, reeled.tether, node_kg, between);
     // Its number is given with all others.
     let segment = spawn_segment(world, reeled.tether, &tether, 1, 0);
+    if world.get::<RigidLink>(reeled.segment).is_some() {
+        world.entity_mut(segment).insert(RigidLink);
+    }
     set_mass(
         world,
         reeled.far,
@@ -86,9 +93,10 @@ pub(super) fn join(world: &mut World, line: Entity) {
     };
     let (node, beyond) = (parts.points[node_at], parts.points[beyond_at]);
     let segment = parts.segments[segment_at];
-    let Some(joined_m) = world.get::<KelvinVoigt>(segment).map(|s| s.rest_length_m) else {
+    if world.get::<KelvinVoigt>(segment).is_none() {
         return;
-    };
+    }
+    let joined_m = reeled.nominal_m;
     let half_kg_m = 0.5 * reeled.line_kg_m;
     let velocity = motion(world, node).1;
     take_in(world, reeled.near, half_kg_m * joined_m, velocity);

@@ -75,6 +75,7 @@ fn act(world: &mut World, action: &Action) {
 }
 
 fn go_on(world: &mut World, integration: &mut Integration) -> Result<(), StepFailure> {
+    reeling::weigh(world);
     restructure(world, integration).map_err(|error| {
         let messages = error.0.into_iter().map(|violation| violation.message);
         StepFailure::Fault(Fault {

@@ -8,9 +8,11 @@ use aerobot_components::state::FirstOrderState;
 use aerobot_components::tether::TetherParts;
 use aerobot_components::winch::{Reeled, ReeledLine};
 use aerobot_systems::clock::Clock;
+use aerobot_systems::dynamics::winch::{carry, pay_out};
 use aerobot_systems::instruments::winch::ReelPower;
 use bevy_ecs::component::Component;
 use bevy_ecs::entity::Entity;
+use bevy_ecs::system::RunSystemOnce;
 use bevy_ecs::world::World;
 
 use super::{Change, dividing, log};
@@ -87,6 +89,13 @@ pub(super) fn start(
     });
     log(world, "reel start", entity, None);
     plan(world, line);
+}
+
+/// Gives the points at winches, and what carries them, the masses that they have at the lengths of now.
+pub(super) fn weigh(world: &mut World) {
+    // Systems that were written here and take nothing that could be missing.
+    let _ = world.run_system_once(pay_out);
+    let _ = world.run_system_once(carry);
 }
 
 /// Takes the turn that has come at a line.

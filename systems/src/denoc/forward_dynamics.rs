@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::articulated_body::{ArticulatedBody, BodyBias, CENTRE};
 use super::articulated_link::{ArticulatedLink, Carried, LinkBias, Stretch};
 use super::kinematics::{BodyState, LimbOffsets, LinkStates};
-use super::tree::KinematicTree;
+use super::tree::{KinematicTree, LinkKind};
 use crate::linearised_motion::body_block::{BodyBlock, Place, Twist};
 use crate::linearised_motion::symmetric3::Symmetric3;
 
@@ -45,6 +45,8 @@ pub struct Loads {
     pub anchor_m_s2: Vec<DVec3>,
     /// Acceleration of the anchor of each closure that has one, m/s^2.
     pub tie_m_s2: Vec<DVec3>,
+    /// Whether all of this is momenta and velocities, and velocities are asked for.
+    pub are_momenta: bool,
 }
 
 /// What comes out.
@@ -219,16 +221,15 @@ impl ForwardDynamics {
         let count = spans.len();
         let per_length = 1.0 / kind.length_m;
         for k in (0..count).rev() {
-            let (direction, centripetal) = match kind.stretch {
-                Stretch::Rigid => {
-                    let square = rates[k].length_squared();
-                    (spans[k] * per_length, -square * per_length)
-                }
+            let (direction, along) = match kind.stretch {
+                Stretch::Rigid => (spans[k] * per_length, loads.along(kind, rates[k])),
                 Stretch::Elastic => (DVec3::ZERO, 0.0),
             };
             let (link, passed_on, positive) =
                 ArticulatedLink::new(carried, kind.coupling_kg, direction, kind.stretch);
-            let bias = link.inward(force, centripetal);
+            let flow = loads.flow(kind, rates[k]);
+            let mut bias = link.inward(force + flow, along);
+            bias.passed_on -= flow;
             links[k] = link;
             biases[k] = bias;
             all_positive &= positive;
@@ -301,7 +302,29 @@ impl Loads {
             bodies: vec![BodyLoad::default(); tree.carried_by.len()],
             anchor_m_s2: vec![DVec3::ZERO; tree.limbs.len()],
             tie_m_s2: vec![DVec3::ZERO; tree.closures.len()],
+            are_momenta: false,
         }
+    }
+
+    /// What the ends of a rigid link do against each other along it: the acceleration that keeps its length L,
+    /// (L'^2 - |d'|^2)/L (m/s^2, L' steady), or its velocity L'.
+    #[inline(always)]
+    fn along(&self, kind: &LinkKind, rate_m_s: DVec3) -> f64 {
+        if self.are_momenta {
+            return kind.length_rate_m_s;
+        }
+        let own = kind.length_rate_m_s * kind.length_rate_m_s;
+        (own - rate_m_s.length_squared()) / kind.length_m
+    }
+
+    /// Of a rod whose mass changes with its length, E' d' of the momentum E d' that it has beyond that of its
+    /// halves, N: at its distal end, the opposite at the proximal one.
+    #[inline(always)]
+    fn flow(&self, kind: &LinkKind, rate_m_s: DVec3) -> DVec3 {
+        if self.are_momenta {
+            return DVec3::ZERO;
+        }
+        kind.coupling_rate_kg_s() * rate_m_s
     }
 }
 

@@ -51,6 +51,7 @@ pub fn allowed_motion(
         body.rate_rad_s = DVec3::ZERO;
     }
     momenta.tie_m_s2.copy_from_slice(ties_m_s);
+    momenta.are_momenta = true;
     for (index, (limb, kind)) in tree.limbs.iter().zip(&tree.kinds).enumerate() {
         let first = limb.proximal_point();
         momenta.anchor_m_s2[index] = points[first].velocity_m_s;

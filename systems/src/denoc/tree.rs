@@ -6,8 +6,9 @@
 //!
 //! A tether by which a body, or an anchor, is reached a second time closes a loop. It is cut at that end: it
 //! becomes a limb that carries a *tip*, a point of its own, and a [`Closure`] says where the tip has to stay
-//! ([`super::loops`]). Of a tether that has been severed during a run, each [`Piece`] is a limb; a node that is
-//! left at its end is *loose*, and counts as a body that is a point.
+//! ([`super::loops`]). Of a tether that has been severed during a run, each [`Piece`] is a limb, and so is the link
+//! at a winch, whose length changes; a node between them or at their ends is *loose*, and counts as a body that is
+//! a point.
 //!
 //! Wherever there is a list of bodies, loose nodes stand after them, and tips after these.
 
@@ -113,12 +114,29 @@ impl Limb {
 pub struct LinkKind {
     /// Length; of an elastic link: at rest, m.
     pub length_m: f64,
+    /// Rate of it where a winch pays out or reels in, m/s.
+    pub length_rate_m_s: f64,
     /// What a rod adds between its ends, -m/6; zero for a massless link, kg.
     pub coupling_kg: f64,
     /// Mass of a joint between two of them: of a rod, half of either beside it, kg.
     pub joint_mass_kg: f64,
     /// Whether they keep their length.
     pub stretch: Stretch,
+}
+
+impl LinkKind {
+    /// Gives it another length (m), and the mass that goes with it.
+    pub fn reel(&mut self, length_m: f64) {
+        self.coupling_kg *= length_m / self.length_m;
+        self.length_m = length_m;
+    }
+
+    /// Rate of the coupling of a link that is reeled, kg/s.
+    #[inline]
+    #[must_use]
+    pub fn coupling_rate_kg_s(&self) -> f64 {
+        self.coupling_kg / self.length_m * self.length_rate_m_s
+    }
 }
 
 /// A tree, or several side by side.
@@ -148,20 +166,23 @@ impl KinematicTree {
     pub fn new(topology: &Topology, kinds: &[LinkKind], preferred: &[usize]) -> Self {
         let pieces: Vec<Piece> = topology.lines.iter().enumerate().map(Piece::from).collect();
         let turns: Vec<bool> = topology.bodies.iter().map(|site| site.turns).collect();
-        Self::of_pieces(&pieces, &turns, kinds, preferred)
+        Self::of_pieces(&pieces, (&turns, turns.len()), kinds, preferred)
     }
 
-    /// The tree of pieces of tethers between bodies and loose nodes, of which `turns` says whether they turn.
+    /// The tree of pieces of tethers, each with its kind of links, between bodies and loose nodes, of which `turns`
+    /// says whether they turn; loose nodes begin at `loose_from`.
     #[must_use]
     pub fn of_pieces(
         pieces: &[Piece],
-        turns: &[bool],
+        (turns, loose_from): (&[bool], usize),
         kinds: &[LinkKind],
         preferred: &[usize],
     ) -> Self {
         let bodies = turns.len();
         let mut growth = Growth {
             pieces,
+            kinds,
+            loose_from,
             used: vec![false; pieces.len()],
             reached: vec![false; bodies],
             tree: Self {
@@ -186,7 +207,6 @@ impl KinematicTree {
             }
         }
         let mut tree = growth.tree;
-        tree.kinds = tree.limbs.iter().map(|limb| kinds[limb.line]).collect();
         let is_knot = |body: usize| {
             let carries = tree.limbs.iter().filter(|limb| limb.parent == Some(body));
             let turns = turns.get(body).is_some_and(|turns| *turns);
@@ -200,6 +220,9 @@ impl KinematicTree {
 /// A tree on its way.
 struct Growth<'a> {
     pieces: &'a [Piece],
+    kinds: &'a [LinkKind],
+    /// Where loose nodes begin among bodies.
+    loose_from: usize,
     used: Vec<bool>,
     reached: Vec<bool>,
     tree: KinematicTree,
@@ -237,12 +260,15 @@ impl Growth<'_> {
                 self.reached[body] = true;
                 body
             }
+            // A loop is closed at a body: from a loose node its other piece goes on when its turn comes.
+            End::OnBody(body) if body >= self.loose_from => return,
             End::OnBody(body) => self.tie_tip(Some(body)),
             End::Held => self.tie_tip(None),
         };
         self.used[index] = true;
         let links = self.tree.links..self.tree.links + line.links;
         self.tree.links = links.end;
+        self.tree.kinds.push(self.kinds[index]);
         self.tree.carried_by[child] = Some(self.tree.limbs.len());
         self.tree.limbs.push(Limb {
             line: line.line,
@@ -302,6 +328,7 @@ mod tests {
     fn kinds(count: usize) -> Vec<LinkKind> {
         let kind = LinkKind {
             length_m: 1.0,
+            length_rate_m_s: 0.0,
             coupling_kg: 0.0,
             joint_mass_kg: 1.0,
             stretch: Stretch::Rigid,

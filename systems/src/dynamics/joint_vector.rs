@@ -6,12 +6,13 @@
 //! force is asked for.
 //!
 //! Read from components that the joints do not allow (a scene whose poses stretch a tether, a velocity that
-//! a plugin has set), links keep their directions, what nothing holds keeps its centre of mass, and momentum
-//! is conserved ([`crate::denoc::impulse`]). Closed loops are kept closed (`closing.rs`).
+//! a plugin has set), links keep their directions (`starting.rs`). Closed loops are kept closed (`closing.rs`).
 
 mod closing;
+mod starting;
 
-use aerobot_components::state::Origin;
+use aerobot_components::state::{FirstOrderState, Origin};
+use aerobot_components::winch::ReeledLine;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
 use glam::DVec3;
@@ -24,17 +25,12 @@ use super::state_space::{Layout, StateSpace};
 use super::tree_components::TreeComponents;
 use crate::denoc::articulated_link::Stretch;
 use crate::denoc::forward_dynamics::Accelerations;
-use crate::denoc::impulse::allowed_motion;
 use crate::denoc::joint_coordinates::LinkChart;
 use crate::denoc::kinematics::{BodyState, LinkStates, PointState, sweep_outward};
 use crate::denoc::stage_system::JointPlaces;
 use crate::denoc::tree::LinkKind;
 use crate::fault::Fault;
 use crate::integration::Correction;
-
-/// Bodies whose links would move them by less than this, m, and rates along links below this, m/s, are
-/// round-off.
-const ROUND_OFF: f64 = 1e-9;
 
 /// Moves joint coordinates between a flat vector and the components of a world.
 pub struct JointVector {
@@ -85,101 +81,21 @@ impl JointVector {
         self.places.places()
     }
 
-    /// Takes the links as the points have them for the centres of the charts, with their rates; whether
-    /// some rate is one that a rigid link cannot have.
-    fn take_links(&mut self, world: &World) -> bool {
-        let tree = &world.resource::<LinkMechanism>().tree;
-        let mut is_stretching = false;
-        for (limb, kind) in tree.limbs.iter().zip(&tree.kinds) {
-            let mut before = self.components.points[limb.proximal_point()];
-            for (k, link) in limb.links.clone().enumerate() {
-                let here = self.components.points[limb.distal_point(k)];
-                let span = here.position_m - before.position_m;
-                let given = here.velocity_m_s - before.velocity_m_s;
-                let (chart, rate) = LinkChart::around(span, given, kind.length_m, kind.stretch);
-                is_stretching |= rate.distance(given) > ROUND_OFF;
-                self.charts[link] = chart;
-                self.links.span_m[link] = chart.centre_m;
-                self.links.rate_m_s[link] = rate;
-                before = here;
-            }
-        }
-        is_stretching
-    }
-
-    /// Moves bases so that what is free keeps its centre of mass where links put bodies elsewhere than they
-    /// stood; whether they do.
-    fn keep_centres_of_mass(&mut self, world: &World) -> bool {
-        let mechanism = world.resource::<LinkMechanism>();
-        let given = self.components.bodies.clone();
-        let given_points = self.components.points.clone();
-        self.sweep(mechanism);
-        self.close_at_start(mechanism);
-        let mut base_of: Vec<Option<usize>> = vec![None; given.len()];
-        for &base in &mechanism.tree.bases {
-            base_of[base] = Some(base);
-        }
-        for limb in &mechanism.tree.limbs {
-            base_of[limb.child] = limb.parent.and_then(|parent| base_of[parent]);
-        }
-        let mut moments = vec![(0.0, DVec3::ZERO); given.len()];
-        let mut is_moved = false;
-        let mut weigh = |base: Option<usize>, mass_kg: f64, given: PointState, now: PointState| {
-            let shift = given.position_m - now.position_m;
-            is_moved |= shift.length() > ROUND_OFF;
-            if let Some(base) = base {
-                moments[base].0 += mass_kg;
-                moments[base].1 += mass_kg * shift;
-            }
-        };
-        for (body, now) in self.components.bodies.iter().enumerate() {
-            let mass_kg = mechanism.loads.bodies[body].mass.linear.x_axis.x;
-            weigh(base_of[body], mass_kg, given[body].centre, now.centre);
-        }
-        for (limb, kind) in mechanism.tree.limbs.iter().zip(&mechanism.tree.kinds) {
-            for joint in (1..limb.links.len()).map(|k| limb.distal_point(k - 1)) {
-                let now = self.components.points[joint];
-                weigh(
-                    base_of[limb.child],
-                    kind.joint_mass_kg,
-                    given_points[joint],
-                    now,
-                );
-            }
-        }
-        for &base in mechanism.tree.bases.iter().filter(|_| is_moved) {
-            let (mass_kg, moment) = moments[base];
-            self.components.bodies[base].centre.position_m += moment / mass_kg;
-        }
-        is_moved
-    }
-
-    /// Gives bodies and links the motion that impulses of the joints make of theirs.
-    fn take_impulses(&mut self, world: &World) {
-        let mechanism = world.resource::<LinkMechanism>();
-        let mut found = mechanism.accelerations.clone();
-        let mut dynamics = mechanism.dynamics.clone();
-        let offsets = &mechanism.entities.offsets;
-        let ties = self.components.ties.iter().zip(&offsets.ties_m);
-        let ties_m_s: Vec<DVec3> = ties
-            .map(|(anchor, offset_m)| anchor.place(*offset_m).velocity_m_s)
-            .collect();
-        let allowed = allowed_motion(
-            &mechanism.tree,
-            &mut dynamics,
-            &self.links.span_m,
-            (&self.components.points, &self.components.bodies),
-            (offsets, &ties_m_s),
-            &mechanism.loads,
-            &mut found,
-        );
-        // What has no mass has no momentum either, and is refused when it is to be accelerated.
-        if allowed.is_ok() {
-            self.links.rate_m_s.copy_from_slice(&found.span_m_s2);
-            for (body, motion) in self.components.bodies.iter_mut().zip(&found.bodies) {
-                body.centre.velocity_m_s = motion.linear;
-                body.rate_rad_s = motion.angular;
-            }
+    /// Takes the lengths that links at winches have by now.
+    fn take_lengths(&mut self, world: &mut World) {
+        let reeled = world.resource::<LinkMechanism>().entities.reeled.clone();
+        for (limb, line) in reeled {
+            let (Some(length), Some(line)) = (
+                world.get::<FirstOrderState>(line).copied(),
+                world.get::<ReeledLine>(line).copied(),
+            ) else {
+                continue;
+            };
+            let tree = &mut world.resource_mut::<LinkMechanism>().tree;
+            let kind = &mut tree.kinds[limb];
+            kind.reel(length.value);
+            kind.length_rate_m_s = line.rate_m_s;
+            self.kinds[tree.limbs[limb].links.start] = *kind;
         }
     }
 
@@ -273,8 +189,9 @@ impl StateSpace for JointVector {
         self.loose_origins_m = loose.map(|body| body.centre.position_m).collect();
         self.write_loose(&mut state[..2 * n]);
         let (rates, _) = state[n + self.places.first_link..2 * n].as_chunks_mut::<3>();
-        for (out, rate) in rates.iter_mut().zip(&self.links.rate_m_s) {
-            *out = rate.to_array();
+        let links = self.links.rate_m_s.iter().zip(&self.charts);
+        for (out, ((rate, chart), kind)) in rates.iter_mut().zip(links.zip(&self.kinds)) {
+            *out = chart.rate(*rate, kind).to_array();
         }
         self.first_order.gather(world, &mut state[2 * n..]);
     }
@@ -282,6 +199,8 @@ impl StateSpace for JointVector {
     fn scatter(&mut self, world: &mut World, state: &[f64]) -> Result<(), Fault> {
         let (coordinates, rest) = state.split_at(self.places.coordinates);
         let (velocities, first_order) = rest.split_at(self.places.coordinates);
+        self.first_order.scatter(world, first_order);
+        self.take_lengths(world);
         for (index, origin, chart, ..) in self.components.body_query.iter(world) {
             let place = self.places.bodies[index.0];
             let body = &mut self.components.bodies[index.0];
@@ -319,7 +238,7 @@ impl StateSpace for JointVector {
         let mut beyond = None;
         for (link, (((q, q_rate), (chart, kind)), (span, rate))) in joints.zip(spans).enumerate() {
             let (q, q_rate) = (DVec3::from_array(*q), DVec3::from_array(*q_rate));
-            match chart.span(q, q_rate, kind.length_m, kind.stretch) {
+            match chart.span(q, q_rate, kind) {
                 Some(found) => (*span, *rate) = found,
                 None => beyond = beyond.or(Some(link)),
             }
@@ -336,7 +255,6 @@ impl StateSpace for JointVector {
         self.components.read_anchors(world);
         self.sweep(world.resource::<LinkMechanism>());
         self.components.write(world, &self.links);
-        self.first_order.scatter(world, first_order);
         Ok(())
     }
 
@@ -358,9 +276,7 @@ impl StateSpace for JointVector {
         let (out, _) = rates[n + self.places.first_link..2 * n].as_chunks_mut::<3>();
         let links = self.charts.iter().zip(&self.kinds).zip(&found.span_m_s2);
         for (out, ((chart, kind), span)) in out.iter_mut().zip(links) {
-            *out = chart
-                .acceleration(*span, kind.length_m, kind.stretch)
-                .to_array();
+            *out = chart.acceleration(*span, kind).to_array();
         }
         self.first_order.gather_rates(world, &mut rates[2 * n..]);
     }
@@ -392,8 +308,9 @@ impl StateSpace for JointVector {
         let links = self.charts.iter_mut().zip(&self.kinds).zip(spans);
         for (link, (((chart, kind), (span, rate)), found)) in links.zip(found).enumerate() {
             let at = self.places.first_link + 3 * link;
-            let (centre, rate) = LinkChart::around(*span, *rate, kind.length_m, kind.stretch);
-            let acceleration = centre.acceleration(*found, kind.length_m, kind.stretch);
+            let (centre, rate) = LinkChart::around(*span, *rate, kind);
+            let rate = centre.rate(rate, kind);
+            let acceleration = centre.acceleration(*found, kind);
             *chart = centre;
             state[at..at + 3].fill(0.0);
             rate.write_to_slice(&mut state[n + at..]);

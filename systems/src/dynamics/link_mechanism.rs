@@ -43,6 +43,8 @@ pub struct TreeEntities {
     pub tips_kg: Vec<f64>,
     /// What each body has lent to tips, taken off what it carries: all of it is negative.
     pub lent: Vec<CarriedMass>,
+    /// Limbs of one link that are at winches, with the lines that have their lengths.
+    pub reeled: Vec<(usize, Entity)>,
     /// Elasticity of each limb.
     pub elasticity: Vec<LimbElasticity>,
     /// Number of tether points.
@@ -122,7 +124,15 @@ impl LinkMechanism {
     #[must_use]
     pub fn kinetic_rate_w(&self) -> f64 {
         let found = &self.accelerations.span_m_s2;
-        self.of_links(|link, kg| kg * self.links.rate_m_s[link].dot(found[link]))
+        let steady = self.of_links(|link, kg| kg * self.links.rate_m_s[link].dot(found[link]));
+        let limbs = self.tree.limbs.iter().zip(&self.tree.kinds);
+        let reeled = limbs.filter(|(_, kind)| kind.length_rate_m_s != 0.0);
+        let by_change = reeled.map(|(limb, kind)| {
+            let rates = self.links.rate_m_s[limb.links.clone()].iter();
+            let squares: f64 = rates.map(|rate| rate.length_squared()).sum();
+            0.5 * kind.coupling_rate_kg_s() * squares
+        });
+        steady + by_change.sum::<f64>()
     }
 
     /// Sum over links, by place in the tree and coupling in kg.

@@ -84,6 +84,7 @@ pub fn solve_links(
         (&Force, &Torque),
     )>,
     anchors: Query<&Acceleration>,
+    masses: Query<&Mass, With<TetherNode>>,
 ) {
     let mechanism = &mut *mechanism;
     let (loads, entities) = (&mut mechanism.loads, &mechanism.entities);
@@ -97,6 +98,9 @@ pub fn solve_links(
     }
     for (body, loose) in entities.loose_bodies() {
         loads.bodies[body].load.linear = loads.point_n[loose.point];
+        if let Ok(mass) = masses.get(loose.node) {
+            loads.bodies[body].mass = BodyBlock::point(mass.0);
+        }
     }
     let limbs = loads.anchor_m_s2.iter_mut().zip(&entities.anchors);
     let ties = loads.tie_m_s2.iter_mut().zip(&entities.ties);
@@ -162,7 +166,8 @@ pub fn add_reactions(
         let per_length = 1.0 / kind.length_m;
         let mut before = limb.proximal_point();
         for (k, link) in limb.links.clone().enumerate() {
-            let mut pull = kind.coupling_kg * found.span_m_s2[link];
+            let mut pull = kind.coupling_kg * found.span_m_s2[link]
+                + kind.coupling_rate_kg_s() * mechanism.links.rate_m_s[link];
             if kind.stretch == Stretch::Rigid {
                 pull += (found.tension_n[link] * per_length) * mechanism.links.span_m[link];
             }

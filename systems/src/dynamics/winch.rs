@@ -1,4 +1,4 @@
-//! A line that is paid out or reeled in, in lumped masses. Only the segment at the winch changes: its
+//! A line that is paid out or reeled in. Only the segment at the winch changes: its
 //! unstretched length L0 at the commanded rate r = dL0/dt (m/s), with stiffness EA/L0, damping c'/L0 and mass
 //! mu L0, half at each end. What the two ends gain is lost by the drum, a mass at the same attachment.
 //!
@@ -7,12 +7,12 @@
 //! loads nothing. Reeling in, the far point loses mass at its own velocity and the attachment takes it up at
 //! that velocity: it is loaded by mu |r|/2 (v_far - v_near). Momentum is conserved in both.
 
-use aerobot_components::segment::KelvinVoigt;
+use aerobot_components::segment::{KelvinVoigt, RigidLink};
 use aerobot_components::state::{FirstOrderState, Force, Mass, Velocity};
 use aerobot_components::tether::Attachment;
 use aerobot_components::winch::ReeledLine;
 use bevy_ecs::component::Component;
-use bevy_ecs::query::With;
+use bevy_ecs::query::{With, Without};
 use bevy_ecs::system::Query;
 
 use super::rigid_body::CarriedMass;
@@ -21,10 +21,11 @@ use super::rigid_body::CarriedMass;
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct CarriesReeledLine;
 
-/// Gives the segment at every winch, its two ends and the drum what they have at this length.
+/// Gives the segment at every winch, its two ends and the drum what they have at this length. The spring of a
+/// rigid link is that with which its state of rest was found, and stays.
 pub fn pay_out(
     mut lines: Query<(&ReeledLine, &mut FirstOrderState)>,
-    mut springs: Query<&mut KelvinVoigt>,
+    mut springs: Query<&mut KelvinVoigt, Without<RigidLink>>,
     mut masses: Query<&mut Mass>,
 ) {
     for (line, mut state) in &mut lines {

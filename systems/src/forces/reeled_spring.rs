@@ -61,7 +61,7 @@ pub fn reeled_spring_derivatives(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use aerobot_components::segment::KelvinVoigt;
+    use bevy_ecs::entity::Entity;
 
     fn tension_n(rest_length_m: f64) -> f64 {
         let spring = KelvinVoigt {
@@ -71,8 +71,10 @@ mod tests {
             slack: true,
         };
         let reeled = Reeled {
+            line: Entity::PLACEHOLDER,
             rate_m_s: 0.7,
-            ..Reeled::default()
+            shortest_part: 0.4,
+            tension_by_length_n_m: 0.0,
         };
         let geometry = SegmentGeometry {
             length_m: 11.0,

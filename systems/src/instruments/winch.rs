@@ -9,15 +9,17 @@
 //!
 //! The last term is the weight of new line between the winch and the far point, so that P is -r times the
 //! force at the winch in a slow pay-out. Dampers take c (dL/dt - r L/L0)^2 and the taking up of mass
-//! mu |r|/4 (v_far - v_near)^2 besides.
+//! mu |r|/4 (v_far - v_near)^2 besides. A rigid link keeps its unstretched length: its strain is none, T its force
+//! of constraint, P = -r T + mu r/2 (phi_far - phi_near).
 
-use aerobot_components::segment::{KelvinVoigt, SegmentGeometry, Tension};
+use aerobot_components::body::Anchor;
+use aerobot_components::segment::{KelvinVoigt, RigidLink, SegmentGeometry, Tension};
 use aerobot_components::state::{FirstOrderState, Position, Velocity};
-use aerobot_components::tether::TetherParts;
+use aerobot_components::tether::{Attachment, TetherParts};
 use aerobot_components::winch::ReeledLine;
 use bevy_ecs::component::Component;
 use bevy_ecs::entity::Entity;
-use bevy_ecs::query::Without;
+use bevy_ecs::query::{Has, With, Without};
 use bevy_ecs::system::{Query, Res, ResMut};
 
 use super::channel_log::{BuiltInChannels, ChannelLog};
@@ -49,13 +51,14 @@ pub struct WinchWork(pub Entity);
 pub fn winch_power(
     environment: Res<EnvironmentModel>,
     mut lines: Query<(&ReeledLine, &mut ReelPower)>,
-    segments: Query<(&KelvinVoigt, &SegmentGeometry, &Tension)>,
+    segments: Query<(&KelvinVoigt, &SegmentGeometry, &Tension, Has<RigidLink>)>,
     points: Query<(&Position, &Velocity)>,
+    (ends, anchors): (Query<&Attachment>, Query<(), With<Anchor>>),
     mut works: Query<(&WinchWork, &mut FirstOrderState), Without<ReeledLine>>,
 ) {
     for (line, mut power) in &mut lines {
         *power = ReelPower::default();
-        let (Ok((spring, geometry, tension)), Ok(near), Ok(far)) = (
+        let (Ok((spring, geometry, tension, is_rigid)), Ok(near), Ok(far)) = (
             segments.get(line.segment),
             points.get(line.near),
             points.get(line.far),
@@ -69,14 +72,31 @@ pub fn winch_power(
         }
         let strain = stretch_m / spring.rest_length_m;
         let elastic_n = spring.stiffness_n_m * stretch_m;
-        let by_spring = -rate * elastic_n * (1.0 + 0.5 * strain);
-        power.by_damper_w = -rate * (tension.0 - elastic_n) * (1.0 + strain);
+        let by_spring = if is_rigid {
+            0.0
+        } else {
+            -rate * elastic_n * (1.0 + 0.5 * strain)
+        };
+        // All that a rigid link passes on is a force like that of a damper: it has no potential.
+        power.by_damper_w = if is_rigid {
+            -rate * tension.0
+        } else {
+            -rate * (tension.0 - elastic_n) * (1.0 + strain)
+        };
         let flow_kg_s = 0.5 * line.line_kg_m * rate;
         let gravity = environment.gravity;
-        let by_height =
-            flow_kg_s * (gravity.potential_j_kg(far.0.0.z) - gravity.potential_j_kg(near.0.0.z));
-        let by_speed = 0.5 * flow_kg_s * (far.1.0.length_squared() - near.1.0.length_squared());
-        power.by_change_w = by_spring + by_height + by_speed;
+        let height_j_kg = |at: (&Position, &Velocity)| gravity.potential_j_kg(at.0.0.z);
+        // Masses on anchors do not count in the energy.
+        let energy_j_kg = |point: Entity, at: (&Position, &Velocity)| {
+            let end = ends.get(point);
+            if end.is_ok_and(|end| anchors.contains(end.carrier)) {
+                return 0.0;
+            }
+            height_j_kg(at) + 0.5 * at.1.0.length_squared()
+        };
+        let by_height = flow_kg_s * (height_j_kg(far) - height_j_kg(near));
+        let by_mass = flow_kg_s * (energy_j_kg(line.far, far) - energy_j_kg(line.near, near));
+        power.by_change_w = by_spring + by_mass;
         power.winch_w = by_spring + by_height + power.by_damper_w;
     }
     for (work, mut state) in &mut works {
@@ -88,9 +108,12 @@ pub fn winch_power(
 pub fn winch(
     mut log: ResMut<ChannelLog>,
     lines: Query<(Entity, &ReeledLine, &ReelPower)>,
-    works: Query<(&WinchWork, &FirstOrderState)>,
+    (works, lengths): (
+        Query<(&WinchWork, &FirstOrderState)>,
+        Query<&FirstOrderState>,
+    ),
     tethers: Query<(&BuiltInChannels, &TetherParts)>,
-    springs: Query<&KelvinVoigt>,
+    springs: Query<(), With<KelvinVoigt>>,
 ) {
     for (entity, line, power) in &lines {
         let Ok((channels, parts)) = tethers.get(line.tether) else {
@@ -100,12 +123,13 @@ pub fn winch(
             .iter()
             .find(|(work, _)| work.0 == entity)
             .map_or(0.0, |(_, state)| state.value);
-        let out_m: f64 = parts
+        // Those beyond the winch have their nominal length; what is cut has none.
+        let beyond = parts
             .segments
             .iter()
-            .filter_map(|segment| springs.get(*segment).ok())
-            .map(|spring| spring.rest_length_m)
-            .sum();
+            .filter(|segment| **segment != line.segment && springs.contains(**segment));
+        let reeled_m = lengths.get(entity).map_or(0.0, |state| state.value);
+        let out_m = reeled_m + line.nominal_m * beyond.count() as f64;
         for (channel, value) in [
             (WINCH_POWER, power.winch_w),
             (WINCH_WORK, work_j),

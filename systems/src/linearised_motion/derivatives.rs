@@ -103,7 +103,9 @@ pub struct LinearReel {
     pub segment: usize,
     /// Place among the first-order states.
     pub state: usize,
-    /// Change of its tension with that length, N/m.
+    /// That length, m.
+    pub length_m: f64,
+    /// Change of its tension with it, N/m.
     pub tension_by_length_n_m: f64,
 }
 

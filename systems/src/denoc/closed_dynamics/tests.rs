@@ -47,6 +47,7 @@ impl Case {
         let topology = topology(ropes, bodies.len());
         let kind = LinkKind {
             length_m: LENGTH_M,
+            length_rate_m_s: 0.0,
             coupling_kg: -link_kg / 6.0,
             joint_mass_kg: link_kg,
             stretch: Stretch::Rigid,

@@ -49,6 +49,7 @@ impl Sample {
         let (topology, points) = topology(ropes, body_kg.len());
         let kind = LinkKind {
             length_m: LENGTH_M,
+            length_rate_m_s: 0.0,
             coupling_kg: -drawn.rod_kg / 6.0,
             joint_mass_kg: drawn.rod_kg,
             stretch: Stretch::Rigid,

@@ -166,6 +166,7 @@ fn compare(
     }
     let kind = LinkKind {
         length_m: 1.0,
+        length_rate_m_s: 0.0,
         coupling_kg: -0.05,
         joint_mass_kg: 0.0,
         stretch,

@@ -167,7 +167,8 @@ impl JointVector {
         for ((rate, change), (span, kind)) in rates.zip(self.links.span_m.iter().zip(&self.kinds)) {
             *rate += *change;
             if kind.stretch == Stretch::Rigid {
-                *rate -= (rate.dot(*span) / span.length_squared()) * *span;
+                let apart = kind.length_m * kind.length_rate_m_s - rate.dot(*span);
+                *rate += (apart / span.length_squared()) * *span;
             }
         }
     }
@@ -177,7 +178,7 @@ impl JointVector {
         let spans = self.links.span_m.iter_mut().zip(&mut self.links.rate_m_s);
         let charts = self.charts.iter_mut().zip(&self.kinds);
         for ((span, rate), (chart, kind)) in spans.zip(charts) {
-            (*chart, *rate) = LinkChart::around(*span, *rate, kind.length_m, kind.stretch);
+            (*chart, *rate) = LinkChart::around(*span, *rate, kind);
             *span = chart.centre_m;
         }
     }
