@@ -306,8 +306,8 @@ fn loops_of_reeled_links_stay_closed() {
         let lumped = fly(&hoist(&one, integrator), &[]);
         assert_below("tilted", largest_distance_m(&tilted, &lumped), 0.02);
         let [at, of] = [&tilted, &lumped].map(|results| {
-            let row = frame_at(results, 12.0).states.iter();
-            let row = row.filter(|row| &*row.entity == "body").last();
+            let mut rows = frame_at(results, 12.0).states.iter();
+            let row = rows.find(|row| &*row.entity == "body");
             row.unwrap().rotation.unwrap().0
         });
         assert_below("tilt, rad", at.angle_between(of), 0.02);
