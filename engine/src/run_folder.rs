@@ -10,19 +10,22 @@ use rustix::time::{ClockId, clock_gettime};
 use serde::Serialize;
 
 use crate::plugin::Simulator;
-use crate::recording::csv_sink::CsvSink;
 use crate::recording::frame::{Frame, NullSink, ResultSink};
 use crate::recording::summary::{Summary, Timing};
+use crate::recording::table_format::{TableFormat, TableSink};
 use crate::scene::source::{apply, parse_override};
 use crate::scene::{Scene, SceneError};
 use crate::simulation::Simulation;
 
-/// The files that a run writes, besides the tables of its scene.
-const FILES: [&str; 6] = [
+/// The files that a run writes, in one format or the other, besides the tables of its scene.
+const FILES: [&str; 9] = [
     "scene.ron",
     "states.csv",
     "tethers.csv",
     "channels.csv",
+    "states.parquet",
+    "tethers.parquet",
+    "channels.parquet",
     "summary.json",
     "timing.json",
 ];
@@ -103,9 +106,23 @@ pub fn run_into(
     destination: &Destination,
     progress: &mut dyn FnMut(f64),
 ) -> Result<FinishedRun, RunError> {
+    run_into_as(simulator, scene, destination, TableFormat::Csv, progress)
+}
+
+/// As [`run_into`], with tables in this format.
+///
+/// # Errors
+/// As [`run_into`].
+pub fn run_into_as(
+    simulator: &Simulator,
+    scene: &Scene,
+    destination: &Destination,
+    format: TableFormat,
+    progress: &mut dyn FnMut(f64),
+) -> Result<FinishedRun, RunError> {
     destination.check()?;
     let simulation = simulator.build(scene).map_err(RunError::Scene)?;
-    let prepared = PreparedRun::new(simulation, scene, destination)?;
+    let prepared = PreparedRun::in_format(simulation, scene, destination, format)?;
     Ok(prepared.run(&mut NullSink, progress))
 }
 
@@ -114,12 +131,12 @@ pub fn run_into(
 /// For programs that prepare several runs before they begin the first; others call [`run_into`].
 pub struct PreparedRun {
     simulation: Simulation,
-    sink: CsvSink,
+    sink: TableSink,
     folder: PathBuf,
 }
 
 impl PreparedRun {
-    /// Prepares the folder for a simulation that was built from `scene`.
+    /// Prepares the folder for a simulation that was built from `scene`, with tables as CSV.
     ///
     /// # Errors
     /// What the file system refused, or that the folder exists; then nothing was written.
@@ -128,12 +145,25 @@ impl PreparedRun {
         scene: &Scene,
         destination: &Destination,
     ) -> Result<Self, RunError> {
+        Self::in_format(simulation, scene, destination, TableFormat::Csv)
+    }
+
+    /// As [`PreparedRun::new`], with tables in this format.
+    ///
+    /// # Errors
+    /// As [`PreparedRun::new`].
+    pub fn in_format(
+        simulation: Simulation,
+        scene: &Scene,
+        destination: &Destination,
+        format: TableFormat,
+    ) -> Result<Self, RunError> {
         destination.check()?;
         let folder = &destination.folder;
         let as_run = scene_as_run(scene).map_err(RunError::Scene)?;
         let is_new = !folder.exists();
         let prepared = prepare_folder(folder, &as_run).and_then(|()| {
-            CsvSink::create(folder).map_err(|error| RunError::Io(folder.clone(), error))
+            TableSink::create(folder, format).map_err(|error| RunError::Io(folder.clone(), error))
         });
         match prepared {
             Ok(sink) => Ok(Self {
@@ -164,7 +194,7 @@ impl PreparedRun {
             observer,
         };
         let mut summary = self.simulation.run(&mut sink, progress);
-        let flushed = self.sink.flush();
+        let flushed = self.sink.finish();
         if let (Err(error), None) = (&flushed, &summary.stopped) {
             summary.stop(format!("the results cannot be written: {error}"));
         }
@@ -189,7 +219,7 @@ impl PreparedRun {
 
 /// Writes frames, and shows them to an observer.
 struct ObservedSink<'a> {
-    sink: &'a mut CsvSink,
+    sink: &'a mut TableSink,
     observer: &'a mut dyn ResultSink,
 }
 

@@ -80,6 +80,14 @@ enum FormulationName {
     Denoc,
 }
 
+#[derive(Clone, Copy, ValueEnum)]
+enum FormatName {
+    /// Text, row by row as the run goes.
+    Csv,
+    /// Apache Parquet, typed, complete at the end of the run.
+    Parquet,
+}
+
 #[derive(Args)]
 struct RunArguments {
     /// The scene, a RON file.
@@ -89,6 +97,9 @@ struct RunArguments {
     /// Folder for the results; `runs/<name of the scene>` unless given.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Format of the tables.
+    #[arg(long, value_enum, default_value = "csv")]
+    format: FormatName,
     /// Write into a folder that exists.
     #[arg(long)]
     force: bool,

@@ -7,10 +7,11 @@ use std::time::Duration;
 
 use aerobot_engine::plugin::Simulator;
 use aerobot_engine::recording::summary::{Summary, Timing};
-use aerobot_engine::run_folder::{Destination, run_into};
+use aerobot_engine::recording::table_format::TableFormat;
+use aerobot_engine::run_folder::{Destination, run_into_as};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{REFUSED, RunArguments, STOPPED, complain, say};
+use super::{FormatName, REFUSED, RunArguments, STOPPED, complain, say};
 
 pub(super) fn run(simulator: &Simulator, arguments: &RunArguments) -> ExitCode {
     let scene = match simulator.load(&arguments.scene, &arguments.overrides.as_overrides()) {
@@ -29,7 +30,11 @@ pub(super) fn run(simulator: &Simulator, arguments: &RunArguments) -> ExitCode {
         overwrite: arguments.force,
     };
     let bar = progress_bar(scene.run.duration_s, arguments.quiet);
-    let finished = run_into(simulator, &scene, &destination, &mut |time_s| {
+    let format = match arguments.format {
+        FormatName::Csv => TableFormat::Csv,
+        FormatName::Parquet => TableFormat::Parquet,
+    };
+    let finished = run_into_as(simulator, &scene, &destination, format, &mut |time_s| {
         bar.set_position(milliseconds(time_s));
     });
     bar.finish_and_clear();

@@ -3,4 +3,7 @@
 pub mod csv_sink;
 pub mod frame;
 pub mod number;
+pub mod parquet_sink;
+pub mod parquet_table;
 pub mod summary;
+pub mod table_format;
