@@ -20,7 +20,7 @@ pub enum TableFormat {
 /// The open tables of a run.
 pub(crate) enum TableSink {
     Csv(CsvSink),
-    Parquet(ParquetSink),
+    Parquet(Box<ParquetSink>),
 }
 
 impl TableSink {
@@ -28,7 +28,7 @@ impl TableSink {
     pub(crate) fn create(folder: &Path, format: TableFormat) -> io::Result<Self> {
         match format {
             TableFormat::Csv => CsvSink::create(folder).map(Self::Csv),
-            TableFormat::Parquet => ParquetSink::create(folder).map(Self::Parquet),
+            TableFormat::Parquet => ParquetSink::create(folder).map(Box::new).map(Self::Parquet),
         }
     }
 
