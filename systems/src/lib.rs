@@ -12,4 +12,5 @@ pub mod integration;
 pub mod linearised_motion;
 pub mod modes;
 pub mod nonlinear_solver;
+pub mod stochastic;
 pub mod towed_cable;

@@ -5,11 +5,12 @@
 //!                   (z - z0) s e                            shear, zero at z0
 //!                   V  for t in [from, until), else 0       step gust
 //!                   P(z)                                    profile, see wind_profile.rs
+//!                   Y(z, t) e                               stochastic gust, see gust/
 //! ```
 //!
 //! | symbol | meaning | unit |
 //! |---|---|---|
-//! | W, U, V, P | velocity of the air in the inertial frame | m/s |
+//! | W, U, V, P, Y | velocity of the air in the inertial frame | m/s |
 //! | z, z0 | altitude, altitude without shear wind | m |
 //! | s, e | gradient, unit vector | 1/s, 1 |
 //! | t | time | s |
@@ -18,8 +19,10 @@
 //!
 //! Assumptions: no dependence on the horizontal. A step gust is sharp, and the integrator never
 //! steps across one of its edges ([`Wind::edges_s`]): [`Wind::begin_interval`] fixes which steps
-//! blow, once for a whole interval between edges.
+//! blow, once for a whole interval between edges. A stochastic gust is continuous, and steps may cross its
+//! knots; [`Wind::advance_gusts`] makes the time of an evaluation its present.
 
+use super::gust::GustAxis;
 use super::wind_profile::WindProfile;
 use glam::DVec3;
 use thiserror::Error;
@@ -27,10 +30,12 @@ use thiserror::Error;
 /// An altitude where the wind is not known, or one that is not a number.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error(
-    "altitude {altitude_m} m is outside the wind profile, which is known from {lowest_m} m to \
+    "altitude {altitude_m} m is outside the {source_of_wind}, which is known from {lowest_m} m to \
      {highest_m} m"
 )]
 pub struct OutsideWindProfile {
+    /// Which kind of source ends there.
+    pub source_of_wind: &'static str,
     /// The altitude asked for, m.
     pub altitude_m: f64,
     /// The lowest altitude of the profile, m; -inf where it has none.
@@ -152,6 +157,7 @@ impl WindSource {
             _ => (f64::NEG_INFINITY, f64::INFINITY),
         };
         OutsideWindProfile {
+            source_of_wind: "wind profile",
             altitude_m,
             lowest_m,
             highest_m,
@@ -160,13 +166,19 @@ impl WindSource {
 }
 
 /// The sum of wind sources.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Wind {
     /// Sources that are the same at every altitude.
     level: Vec<WindSource>,
     /// Sources that depend on altitude.
     layered: Vec<WindSource>,
+    /// Gusts that are the same at every altitude.
+    level_gusts: Vec<GustAxis>,
+    /// Gusts that depend on altitude.
+    layered_gusts: Vec<GustAxis>,
     /// Sum of `level` over the present interval, m/s.
+    interval_m_s: DVec3,
+    /// That and `level_gusts` at present, m/s.
     level_m_s: DVec3,
 }
 
@@ -180,10 +192,30 @@ impl Wind {
         let mut wind = Self {
             level,
             layered,
+            level_gusts: Vec::new(),
+            layered_gusts: Vec::new(),
+            interval_m_s: DVec3::ZERO,
             level_m_s: DVec3::ZERO,
         };
         wind.begin_interval(f64::NEG_INFINITY);
         wind
+    }
+
+    /// The same wind with stochastic gusts, as they are at their present.
+    #[must_use]
+    pub fn with_gusts(mut self, gusts: Vec<GustAxis>) -> Self {
+        let (layered, level): (Vec<_>, Vec<_>) = gusts
+            .into_iter()
+            .partition(|gust| gust.design().levels.is_some());
+        self.level_gusts.extend(level);
+        self.layered_gusts.extend(layered);
+        self.sum_level();
+        self
+    }
+
+    /// Its stochastic gusts.
+    pub fn gusts(&self) -> impl Iterator<Item = &GustAxis> {
+        self.level_gusts.iter().chain(&self.layered_gusts)
     }
 
     /// No wind.
@@ -215,9 +247,14 @@ impl Wind {
     pub fn scaled(&self, factor: f64) -> Self {
         let scaled =
             |sources: &[WindSource]| sources.iter().map(|source| source.scaled(factor)).collect();
+        let scaled_gusts =
+            |gusts: &[GustAxis]| gusts.iter().map(|gust| gust.scaled(factor)).collect();
         Self {
             level: scaled(&self.level),
             layered: scaled(&self.layered),
+            level_gusts: scaled_gusts(&self.level_gusts),
+            layered_gusts: scaled_gusts(&self.layered_gusts),
+            interval_m_s: factor * self.interval_m_s,
             level_m_s: factor * self.level_m_s,
         }
     }
@@ -225,17 +262,33 @@ impl Wind {
     /// Fixes the step gusts that blow from `start_s` (s) until the next edge, and sums what does
     /// not depend on altitude.
     pub fn begin_interval(&mut self, start_s: f64) {
-        self.level_m_s = self
+        self.interval_m_s = self
             .level
             .iter()
             .filter_map(|source| source.level_velocity_m_s(start_s))
             .sum();
+        self.sum_level();
+    }
+
+    /// Makes a time (s) the present of the stochastic gusts.
+    pub fn advance_gusts(&mut self, time_s: f64) {
+        for gust in self.level_gusts.iter_mut().chain(&mut self.layered_gusts) {
+            gust.advance_to(time_s);
+        }
+        self.sum_level();
+    }
+
+    fn sum_level(&mut self) {
+        self.level_m_s = self.interval_m_s;
+        for gust in &self.level_gusts {
+            self.level_m_s[gust.design().parameters.axis] += gust.velocity_m_s();
+        }
     }
 
     /// Whether the wind depends on altitude.
     #[inline]
     pub fn depends_on_altitude(&self) -> bool {
-        !self.layered.is_empty()
+        !self.layered.is_empty() || !self.layered_gusts.is_empty()
     }
 
     /// The part of the velocity (m/s, inertial frame) that does not depend on altitude, within the
@@ -258,6 +311,11 @@ impl Wind {
                 .layered_velocity_m_s(altitude_m)
                 .ok_or_else(|| source.outside(altitude_m))?;
         }
+        for gust in &self.layered_gusts {
+            velocity_m_s[gust.design().parameters.axis] += gust
+                .velocity_at_m_s(altitude_m)
+                .ok_or_else(|| outside_gust(gust, altitude_m))?;
+        }
         Ok(velocity_m_s)
     }
 
@@ -273,7 +331,23 @@ impl Wind {
                 .slope_per_s(altitude_m)
                 .ok_or_else(|| source.outside(altitude_m))?;
         }
+        for gust in &self.layered_gusts {
+            slope_per_s[gust.design().parameters.axis] += gust
+                .slope_per_s(altitude_m)
+                .ok_or_else(|| outside_gust(gust, altitude_m))?;
+        }
         Ok(slope_per_s)
+    }
+}
+
+#[cold]
+fn outside_gust(gust: &GustAxis, altitude_m: f64) -> OutsideWindProfile {
+    let levels = gust.design().levels.as_ref();
+    OutsideWindProfile {
+        source_of_wind: "gust",
+        altitude_m,
+        lowest_m: levels.map_or(f64::NEG_INFINITY, |levels| levels.lowest_m),
+        highest_m: levels.map_or(f64::INFINITY, |levels| levels.highest_m),
     }
 }
 
