@@ -12,6 +12,7 @@
 //! | `zonal_m_s` | velocity of the air along x | m/s | wind |
 //! | `meridional_m_s` | velocity of the air along y | m/s | wind, optional |
 //! | `vertical_m_s` | velocity of the air along z | m/s | wind, optional |
+//! | `speed_m_s` | one velocity of a sample | m/s | sample |
 //!
 //! Source: RFC 4180 (Shafranovich 2005), of which it is a subset.
 //!
@@ -69,6 +70,20 @@ pub fn read_wind_profile(text: &str) -> Result<WindProfile, TableError> {
         table.values("vertical_m_s"),
     )
     .map_err(|error| table.locate(&error))
+}
+
+/// Reads a sample of velocities, m/s, from CSV text with the column `speed_m_s`, in any order.
+///
+/// # Errors
+/// As [`read_atmosphere`], except that velocities may have any sign; and a sample of one value only.
+pub fn read_sample(text: &str) -> Result<Vec<f64>, TableError> {
+    let table = Table::read(text, &[rule("speed_m_s", true)])?;
+    let sample = table.values("speed_m_s").unwrap_or_default().to_vec();
+    if sample.iter().all(|value| *value == sample[0]) {
+        let message = "a distribution needs at least 2 values that differ".into();
+        return Err(fault(table.header_line, 1, message));
+    }
+    Ok(sample)
 }
 
 /// A column that a table may have.
@@ -378,6 +393,19 @@ mod tests {
                 expected
             );
         }
+    }
+
+    #[test]
+    fn a_sample_is_one_column_in_any_order() {
+        assert_eq!(
+            read_sample("speed_m_s\n3\n-1\n2\n"),
+            Ok(vec![3.0, -1.0, 2.0])
+        );
+        let constant = read_sample("# none\nspeed_m_s\n3\n3\n").unwrap_err();
+        assert_eq!(
+            constant.to_string(),
+            "line 2, column 1: a distribution needs at least 2 values that differ"
+        );
     }
 
     #[test]

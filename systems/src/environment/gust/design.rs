@@ -106,10 +106,8 @@ impl Levels {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum GustError {
     /// A grid in time or over altitude loses too much.
-    #[error("{step} {unit} between {knots} lose {percent:.2} % of the variance on average")]
+    #[error("{knots} {step} {unit} apart lose {percent:.2} % of the variance on average")]
     LosesTooMuch {
-        /// The field at fault.
-        field: &'static str,
         /// The distance of knots.
         step: f64,
         /// Its unit.
@@ -162,6 +160,63 @@ pub enum GustError {
         /// Their distance, m.
         level_m: f64,
     },
+}
+
+impl GustError {
+    /// The field at fault.
+    #[must_use]
+    pub fn field(&self) -> GustField {
+        match self {
+            Self::LosesTooMuch {
+                knots: "levels", ..
+            }
+            | Self::TooManyLevels { .. } => GustField::OfSource("coherence.level_m"),
+            Self::LosesTooMuch { .. } | Self::TooManyLags { .. } => GustField::OfAxis("grid_s"),
+            Self::Unreachable { .. } | Self::NotPositiveDefinite { .. } => {
+                GustField::OfAxis("autocorrelation")
+            }
+        }
+    }
+
+    /// What would do.
+    #[must_use]
+    pub fn help(&self) -> String {
+        match self {
+            Self::LosesTooMuch {
+                knots,
+                unit,
+                enough,
+                ..
+            } => {
+                let field = if *knots == "levels" { "level_m" } else { "grid_s" };
+                format!(
+                    "{enough} {unit}, which `{field}` is unless given, loses at most {} %; with \
+                     `allow_loss: true` any grid is taken",
+                    100.0 * DEFAULT_LOSS
+                )
+            }
+            Self::Unreachable { .. } | Self::NotPositiveDefinite { .. } => {
+                "with `autocorrelation: Parent` the normal process behind the gust has the stated one; a \
+                 larger `decay_per_s` or a less skewed marginal may do too"
+                    .to_owned()
+            }
+            Self::TooManyLags { enough, .. } => {
+                format!("give a grid of {enough:.3} s or more, or `autocorrelation: Parent`")
+            }
+            Self::TooManyLevels { .. } => {
+                "give a larger `level_m`, or altitudes closer to where the flight goes".to_owned()
+            }
+        }
+    }
+}
+
+/// Where a field stands in a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GustField {
+    /// Below the source of wind.
+    OfSource(&'static str),
+    /// Below the axis.
+    OfAxis(&'static str),
 }
 
 /// A gust along one axis, ready to be drawn.
@@ -347,7 +402,6 @@ impl GustDesign {
         let percent = 100.0 * loss;
         match (&self.levels, &self.parameters.layers) {
             (Some(levels), Some(layers)) if in_altitude > in_time => Err(GustError::LosesTooMuch {
-                field: "coherence.level_m",
                 step: levels.spacing_m,
                 unit: "m",
                 knots: "levels",
@@ -355,7 +409,6 @@ impl GustDesign {
                 enough: self.default_level_m(layers.decay_length_m),
             }),
             _ => Err(GustError::LosesTooMuch {
-                field: "grid_s",
                 step: self.grid_s,
                 unit: "s",
                 knots: "knots",

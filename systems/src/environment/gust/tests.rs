@@ -319,7 +319,7 @@ fn a_coarse_grid_is_refused_with_what_would_do() {
     let refused = GustAxis::new(coarse, 0).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "1 s between knots lose 2.26 % of the variance on average"
+        "knots 1 s apart lose 2.26 % of the variance on average"
     );
     // A whole period later everything is nearly as it was, which does not make the grid a fine one.
     let mut aliased = parameters(1e-4, 1.0, UNIT);
