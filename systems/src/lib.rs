@@ -7,6 +7,7 @@ pub mod dynamics;
 pub mod environment;
 pub mod fault;
 pub mod forces;
+pub mod gust_fit;
 pub mod instruments;
 pub mod integration;
 pub mod linearised_motion;

@@ -111,9 +111,9 @@ const WIND_COLUMNS: [ColumnRule; 4] = [
 ];
 
 /// A field of a line, without blanks and quotes, and the character it begins at, from 1.
-struct Field<'a> {
-    text: &'a str,
-    column: usize,
+pub(crate) struct Field<'a> {
+    pub(crate) text: &'a str,
+    pub(crate) column: usize,
 }
 
 /// One column as read, with the place of each value.
@@ -264,7 +264,7 @@ fn read_number(line: usize, field: &Field, name: &str) -> Result<f64, TableError
 }
 
 /// The fields of a line with their places.
-fn fields(line: &str) -> Vec<Field<'_>> {
+pub(crate) fn fields(line: &str) -> Vec<Field<'_>> {
     let mut next_column = 1;
     line.split(',')
         .map(|raw| {
@@ -292,7 +292,7 @@ fn names(rules: &[ColumnRule]) -> String {
     names.join(", ")
 }
 
-fn fault(line: usize, column: usize, message: String) -> TableError {
+pub(crate) fn fault(line: usize, column: usize, message: String) -> TableError {
     TableError {
         line,
         column,
