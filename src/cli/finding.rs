@@ -43,12 +43,21 @@ pub(super) fn tell(
     arguments: &FindArguments,
     out: Option<&Path>,
 ) -> ExitCode {
+    tell_found(found, arguments.quiet, out)
+}
+
+/// The same for a command with arguments of its own.
+pub(super) fn tell_found(
+    found: Result<Found, String>,
+    quiet: bool,
+    out: Option<&Path>,
+) -> ExitCode {
     match found {
         Ok(found) => {
             for warning in &found.warnings {
                 complain(format_args!("warning: {warning}"));
             }
-            if !arguments.quiet {
+            if !quiet {
                 say(found.text.trim_end());
                 if let Some(file) = out {
                     say(format_args!("{}: `{}`", found.written, file.display()));

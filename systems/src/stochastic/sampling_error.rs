@@ -36,6 +36,12 @@ impl SamplingError {
         Self { parent, count }
     }
 
+    /// The lag beyond which nothing is left.
+    #[must_use]
+    pub fn reach(&self) -> usize {
+        self.parent.len()
+    }
+
     /// Standard error of the mean of `function` of the parent.
     #[must_use]
     pub fn of_mean(&self, function: impl Fn(f64) -> f64) -> f64 {

@@ -344,6 +344,16 @@ impl GustDesign {
         }
     }
 
+    /// Lags (s) at which its correlations are worth looking at: 1, 2.5, 5 and 10 times the largest of 1, 2 and 5
+    /// times a power of ten that is not above 1/|-alpha + i omega|.
+    #[must_use]
+    pub fn telling_lags_s(&self) -> [f64; 4] {
+        let process = &self.parameters.process;
+        let rate = libm::hypot(process.decay_per_s, process.frequency_rad_s);
+        let base_s = largest_round(1.0 / rate, |_| true);
+        [1.0, 2.5, 5.0, 10.0].map(|times| times * base_s)
+    }
+
     fn loss_of_grid(&self, grid_s: f64) -> f64 {
         // Beyond half a period knots meet again what lies between them.
         let half_period_s = std::f64::consts::PI / self.parameters.process.frequency_rad_s;

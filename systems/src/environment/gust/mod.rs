@@ -21,6 +21,7 @@
 
 pub mod design;
 pub mod parent;
+pub mod statistics;
 
 use design::{GustDesign, GustError, GustParameters, Levels};
 use parent::Parent;
