@@ -29,6 +29,11 @@ pub struct GustSpec {
     /// Whether grids may lose more than 1 % of the variance by interpolation.
     #[serde(default)]
     pub allow_loss: bool,
+    /// At how many knots a step of an integrator with step control ends at the latest, 1 unless given: it sees
+    /// the wind at a few times only, and what it misses adds up. 0 lets it pass as many as it likes. This
+    /// changes the number of steps and their error, not the wind.
+    #[serde(default = "GustSpec::one")]
+    pub knots_per_step: u32,
 }
 
 /// What a gust does along one axis.
@@ -119,6 +124,10 @@ pub enum CoherenceSpec {
 }
 
 impl GustSpec {
+    fn one() -> u32 {
+        1
+    }
+
     /// The axes with their names in a scene, x, y and z in this order.
     #[must_use]
     pub fn axes(&self) -> [(&'static str, Option<&GustAxisSpec>); 3] {

@@ -4,6 +4,7 @@ use aerobot_components::environment::WindSpec;
 use aerobot_components::gust::{
     AutocorrelationSpec, CoherenceSpec, GustAxisSpec, GustSpec, MarginalSpec,
 };
+use aerobot_components::run::IntegratorSpec;
 use aerobot_components::scene_component::FieldReport;
 use aerobot_systems::environment::gust::GustAxis;
 use aerobot_systems::environment::gust::design::{GustDesign, GustField, GustParameters, Layers};
@@ -45,6 +46,7 @@ struct NumberedGust<'a> {
     place: usize,
     spec: &'a GustSpec,
     stream: u32,
+    knots_per_step: u32,
 }
 
 /// The gusts of a scene; each draws from the stream of its number among them, unless it names one.
@@ -54,12 +56,15 @@ fn gusts(scene: &Scene) -> impl Iterator<Item = NumberedGust<'_>> {
         WindSpec::Gust(spec) => Some((place, spec)),
         _ => None,
     });
+    // Who asks for fixed steps gets them.
+    let is_fixed = matches!(scene.run.integrator, IntegratorSpec::Fixed { .. });
     (0..)
         .zip(gusts)
-        .map(|(number, (place, spec))| NumberedGust {
+        .map(move |(number, (place, spec))| NumberedGust {
             place,
             spec,
             stream: spec.stream.unwrap_or(number),
+            knots_per_step: if is_fixed { 0 } else { spec.knots_per_step },
         })
 }
 
@@ -97,6 +102,7 @@ impl NumberedGust<'_> {
             layers: layers(&self.spec.coherence),
             allow_loss: self.spec.allow_loss,
             stream: self.stream,
+            knots_per_step: self.knots_per_step,
         })
     }
 }

@@ -19,8 +19,9 @@
 //!
 //! Assumptions: no dependence on the horizontal. A step gust is sharp, and the integrator never
 //! steps across one of its edges ([`Wind::edges_s`]): [`Wind::begin_interval`] fixes which steps
-//! blow, once for a whole interval between edges. A stochastic gust is continuous, and steps may cross its
-//! knots; [`Wind::advance_gusts`] makes the time of an evaluation its present.
+//! blow, once for a whole interval between edges. A stochastic gust is continuous: nothing
+//! switches at its knots; [`Wind::advance_gusts`] makes the time of an evaluation its present, and
+//! [`Wind::step_limit_s`] says where a step should end that is to see all of it.
 
 use super::gust::GustAxis;
 use super::wind_profile::WindProfile;
@@ -276,6 +277,13 @@ impl Wind {
             gust.advance_to(time_s);
         }
         self.sum_level();
+    }
+
+    /// The time (s) after `time_s` at which a step should end at the latest for the sake of the gusts.
+    #[must_use]
+    pub fn step_limit_s(&self, time_s: f64) -> f64 {
+        let limits = self.gusts().map(|gust| gust.step_limit_s(time_s));
+        limits.fold(f64::INFINITY, f64::min)
     }
 
     fn sum_level(&mut self) {

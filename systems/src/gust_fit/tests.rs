@@ -26,6 +26,7 @@ fn series(
         layers: None,
         allow_loss: true,
         stream: 0,
+        knots_per_step: 2,
     };
     let gust = GustAxis::new(parameters, seed).unwrap();
     let mut parent = gust.design().parent(seed);

@@ -53,6 +53,8 @@ pub struct GustParameters {
     pub allow_loss: bool,
     /// Which random numbers it draws, beside its axis.
     pub stream: u32,
+    /// The most knots that a step may pass; 0 is any number.
+    pub knots_per_step: u32,
 }
 
 /// A gust that depends on altitude.

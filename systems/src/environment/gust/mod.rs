@@ -31,6 +31,9 @@ use parent::Parent;
 const KEPT_NUMBERS: usize = 1 << 16;
 const LEAST_KNOTS: usize = 256;
 
+/// A step of less than this part of the knots it may pass is none.
+const SLIVER: f64 = 1e-6;
+
 /// A gust along one axis, at a present time.
 #[derive(Clone, Debug)]
 pub struct GustAxis {
@@ -94,6 +97,19 @@ impl GustAxis {
         self.row = (knot - self.first) as usize * levels;
         self.part = place - knot as f64;
         self.present_m_s = self.at_level(0);
+    }
+
+    /// The time (s) after `time_s` at which a step should end at the latest, so as not to pass over what the
+    /// wind does; infinite if it may pass any number of knots.
+    #[must_use]
+    pub fn step_limit_s(&self, time_s: f64) -> f64 {
+        let span_s = f64::from(self.design.parameters.knots_per_step) * self.design.grid_s;
+        if span_s == 0.0 {
+            return f64::INFINITY;
+        }
+        // Round-off must not make a sliver of a step.
+        let passed = (time_s / span_s + SLIVER).floor();
+        (passed + 1.0) * span_s
     }
 
     /// Velocity (m/s) at present where it is the same everywhere; else at the lowest level.

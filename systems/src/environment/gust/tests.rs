@@ -24,6 +24,7 @@ fn parameters(decay_per_s: f64, frequency_rad_s: f64, marginal: Marginal) -> Gus
         layers: None,
         allow_loss: false,
         stream: 0,
+        knots_per_step: 2,
     }
 }
 
@@ -351,6 +352,21 @@ fn the_wind_is_a_function_of_time() {
     let mut other = GustAxis::new(parameters, 11).unwrap();
     other.advance_to(times_s[2999]);
     assert_eq!(other.velocity_m_s(), velocities[2999]);
+}
+
+/// A step ends on every second knot at the latest, also where round-off puts its start before one.
+#[test]
+fn steps_pass_no_more_knots_than_they_may() {
+    let mut parameters = parameters(0.05, 0.2, UNIT);
+    parameters.grid_s = Some(0.1);
+    let gust = GustAxis::new(parameters.clone(), 0).unwrap();
+    for (time_s, limit_s) in [(0.0, 0.2), (0.15, 0.2), (0.2, 0.4), (0.1 + 0.2 + 0.3, 0.8)] {
+        assert!((gust.step_limit_s(time_s) - limit_s).abs() < 1e-12);
+    }
+    assert!((gust.step_limit_s(0.6_f64.next_down()) - 0.8).abs() < 1e-12);
+    parameters.knots_per_step = 0;
+    let gust = GustAxis::new(parameters, 0).unwrap();
+    assert_eq!(gust.step_limit_s(0.0), f64::INFINITY);
 }
 
 /// Axes, streams and seeds draw numbers of their own.
