@@ -55,7 +55,9 @@ const HELD: &str = r#"(
 /// The wind of a scene, drawn without any flight.
 fn wind_of(text: &str, overrides: &[&str]) -> Wind {
     let scene = load(&Simulator::new(), text, overrides);
-    environment_model(&scene).unwrap_or_else(|error| panic!("{error:?}")).wind
+    environment_model(&scene)
+        .unwrap_or_else(|error| panic!("{error:?}"))
+        .wind
 }
 
 fn velocity(wind: &mut Wind, time_s: f64, altitude_m: f64) -> DVec3 {
@@ -88,7 +90,9 @@ fn the_wind_of_a_flight_is_that_of_its_time_and_seed() {
             for until_s in [0.5, 7.0, 20.0] {
                 let mut scene = scene.clone();
                 scene.run.duration_s = until_s;
-                let mut simulation = simulator.build(&scene).unwrap_or_else(|error| panic!("{error}"));
+                let mut simulation = simulator
+                    .build(&scene)
+                    .unwrap_or_else(|error| panic!("{error}"));
                 let summary = simulation.run(&mut MemorySink::default(), &mut |_| {});
                 assert_eq!(summary.outcome, "done");
                 let air = &simulation.world().resource::<EnvironmentModel>().wind;
@@ -109,7 +113,9 @@ fn a_gust_does_not_depend_on_others() {
     let mut alone = with(format!("Gust({along_x})"));
     let mut with_axis = with(format!("Gust({along_x}, {along_y})"));
     let mut with_source = with(format!("Gust({along_x}), Gust({along_y}), VenusZonal"));
-    let mut later = with(format!("Gust({along_y}, stream: 7), Gust({along_x}, stream: 0)"));
+    let mut later = with(format!(
+        "Gust({along_y}, stream: 7), Gust({along_x}, stream: 0)"
+    ));
     for time_s in [0.0, 0.3, 17.2, 400.0] {
         let x = velocity(&mut alone, time_s, 0.0).x;
         assert_eq!(velocity(&mut with_axis, time_s, 0.0).x, x);
@@ -118,7 +124,10 @@ fn a_gust_does_not_depend_on_others() {
     }
     let mut other_seed = wind_of(HELD, &["run.seed=5"]);
     let mut seed = wind_of(HELD, &[]);
-    assert_ne!(velocity(&mut other_seed, 1.0, 0.0), velocity(&mut seed, 1.0, 0.0));
+    assert_ne!(
+        velocity(&mut other_seed, 1.0, 0.0),
+        velocity(&mut seed, 1.0, 0.0)
+    );
 }
 
 /// Implicit steps from knot to knot fly as explicit ones hundreds of times as short do, to the accuracy of a
@@ -127,7 +136,10 @@ fn a_gust_does_not_depend_on_others() {
 fn integrators_agree_in_gusts() {
     let simulator = Simulator::new();
     let end = |seed: u64, integrator: &str| {
-        let overrides = owned(&[&format!("run.integrator={integrator}"), &format!("run.seed={seed}")]);
+        let overrides = owned(&[
+            &format!("run.integrator={integrator}"),
+            &format!("run.seed={seed}"),
+        ]);
         let scene = simulator.load(&scene_file(SCENE), &overrides);
         let results = run(&simulator, &scene.unwrap_or_else(|error| panic!("{error}")));
         results.positions("gondola").last().copied().unwrap()
@@ -145,7 +157,9 @@ fn integrators_agree_in_gusts() {
 #[test]
 fn a_run_in_gusts_repeats_itself() {
     let scratch = Scratch::folder();
-    let sample: String = (0..50).map(|k| format!("{}\n", f64::from(k * k % 31) / 10.0)).collect();
+    let sample: String = (0..50)
+        .map(|k| format!("{}\n", f64::from(k * k % 31) / 10.0))
+        .collect();
     scratch.file("speeds.csv", &format!("speed_m_s\n{sample}"));
     let empirical = HELD.replace(
         "marginal: Weibull(scale_m_s: 0.8, shape: 1.9)",
@@ -159,7 +173,13 @@ fn a_run_in_gusts_repeats_itself() {
         let output = aerobot(&["run", scene, "--out", out, "--quiet"]);
         assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     }
-    for file in ["scene.ron", "states.csv", "channels.csv", "summary.json", "speeds.csv"] {
+    for file in [
+        "scene.ron",
+        "states.csv",
+        "channels.csv",
+        "summary.json",
+        "speeds.csv",
+    ] {
         let read = |folder: &str| fs::read(Path::new(folder).join(file)).unwrap();
         assert!(read(&first) == read(&second), "`{file}` differs");
     }

@@ -22,7 +22,10 @@ fn rows(printed: &str) -> Vec<(String, [f64; 4])> {
         .filter_map(|line| {
             let words: Vec<&str> = line.split_whitespace().collect();
             let (name, numbers) = words.split_at_checked(words.len().checked_sub(4)?)?;
-            let numbers: Vec<f64> = numbers.iter().filter_map(|word| word.parse().ok()).collect();
+            let numbers: Vec<f64> = numbers
+                .iter()
+                .filter_map(|word| word.parse().ok())
+                .collect();
             Some((name.join(" "), numbers.try_into().ok()?))
         })
         .collect()
@@ -35,7 +38,17 @@ fn what_is_drawn_has_its_statistics_and_fits_what_it_was_drawn_from() {
     let scratch = Scratch::folder();
     let (file, again) = (scratch.path("wind.csv"), scratch.path("again.csv"));
     let sample = |out: &str| {
-        let arguments = ["wind", "sample", SCENE, "--duration", "3600", "--altitude", "56000", "--out", out];
+        let arguments = [
+            "wind",
+            "sample",
+            SCENE,
+            "--duration",
+            "3600",
+            "--altitude",
+            "56000",
+            "--out",
+            out,
+        ];
         let printed = aerobot(&arguments);
         assert_eq!(printed.status.code(), Some(0), "{printed:?}");
         text(&printed.stdout)
@@ -44,7 +57,10 @@ fn what_is_drawn_has_its_statistics_and_fits_what_it_was_drawn_from() {
     let rows = rows(&printed);
     assert!(rows.len() > 30, "{printed}");
     for (name, [found, theory, error, off]) in &rows {
-        assert!(off.abs() < 4.0, "{name}: {found} {theory} {error}\n{printed}");
+        assert!(
+            off.abs() < 4.0,
+            "{name}: {found} {theory} {error}\n{printed}"
+        );
     }
     let mean = rows.iter().find(|(name, _)| name == "mean, m/s").unwrap();
     assert_eq!(mean.1[1..3], [0.0, 0.02557]);
@@ -56,7 +72,15 @@ fn what_is_drawn_has_its_statistics_and_fits_what_it_was_drawn_from() {
     assert!(!wind.contains("NaN") && !wind.contains("inf"));
 
     let block = scratch.path("gust.ron");
-    let fit = aerobot(&["wind", "fit", &file, "--column", "zonal_m_s", "--out", &block]);
+    let fit = aerobot(&[
+        "wind",
+        "fit",
+        &file,
+        "--column",
+        "zonal_m_s",
+        "--out",
+        &block,
+    ]);
     assert_eq!(fit.status.code(), Some(0), "{fit:?}");
     let printed = text(&fit.stdout);
     for (name, truth) in [
@@ -65,7 +89,10 @@ fn what_is_drawn_has_its_statistics_and_fits_what_it_was_drawn_from() {
         ("decay_per_s", 0.05),
         ("frequency_rad_s", 0.2),
     ] {
-        let line = printed.lines().find(|line| line.trim().starts_with(name)).unwrap();
+        let line = printed
+            .lines()
+            .find(|line| line.trim().starts_with(name))
+            .unwrap();
         let interval = line.split_once('[').unwrap().1.trim_end_matches(']');
         let (low, high) = interval.split_once(", ").unwrap();
         let (low, high): (f64, f64) = (low.parse().unwrap(), high.parse().unwrap());
@@ -87,11 +114,25 @@ fn quiet_prints_nothing_and_a_file_that_exists_stays() {
     let refused = aerobot(&["wind", "sample", SCENE, "--out", &file]);
     assert_eq!(refused.status.code(), Some(2));
     assert_eq!(fs::read_to_string(&file).unwrap(), "mine\n");
-    let forced = aerobot(&["wind", "sample", SCENE, "--out", &file, "--force", "--quiet"]);
+    let forced = aerobot(&[
+        "wind", "sample", SCENE, "--out", &file, "--force", "--quiet",
+    ]);
     assert_eq!(forced.status.code(), Some(0), "{forced:?}");
     assert!(forced.stdout.is_empty());
-    assert!(fs::read_to_string(&file).unwrap().starts_with("time_s,altitude_m,"));
-    let refused = aerobot(&["wind", "fit", &file, "--column", "zonal_m_s", "--out", &file]);
+    assert!(
+        fs::read_to_string(&file)
+            .unwrap()
+            .starts_with("time_s,altitude_m,")
+    );
+    let refused = aerobot(&[
+        "wind",
+        "fit",
+        &file,
+        "--column",
+        "zonal_m_s",
+        "--out",
+        &file,
+    ]);
     assert_eq!(refused.status.code(), Some(2));
 }
 
@@ -103,8 +144,17 @@ fn what_cannot_be_done_is_refused_with_the_reason() {
     let rows = |speed: &dyn Fn(u32) -> String| -> String {
         (0..40).map(|k| format!("{k},{}\n", speed(k))).collect()
     };
-    let bad = scratch.file("bad.csv", &format!("time_s,u\n{}", rows(&|k| if k == 3 { "x".into() } else { k.to_string() })));
-    let wave = scratch.file("wave.csv", &format!("time_s,u\n{}", rows(&|k| (k % 5).to_string())));
+    let bad = scratch.file(
+        "bad.csv",
+        &format!(
+            "time_s,u\n{}",
+            rows(&|k| if k == 3 { "x".into() } else { k.to_string() })
+        ),
+    );
+    let wave = scratch.file(
+        "wave.csv",
+        &format!("time_s,u\n{}", rows(&|k| (k % 5).to_string())),
+    );
     for (arguments, expected) in [
         (
             vec!["wind", "fit", "nowhere.csv"],
@@ -116,7 +166,9 @@ fn what_cannot_be_done_is_refused_with_the_reason() {
         ),
         (
             vec!["wind", "fit", &wave, "--marginal", "weibull"],
-            format!("error: {wave}: a Weibull distribution is of velocities above zero, and `u` has 0 m/s\n"),
+            format!(
+                "error: {wave}: a Weibull distribution is of velocities above zero, and `u` has 0 m/s\n"
+            ),
         ),
         (
             vec!["wind", "sample", "scenes/paper/comparison_900m.ron"],
@@ -132,14 +184,18 @@ fn what_cannot_be_done_is_refused_with_the_reason() {
         ),
         (
             vec!["wind", "sample", SCENE, "--altitude", "54999"],
-            "error: altitude 54999 m is outside the gust, which is known from 55000 m to 57000 m\n".to_owned(),
+            "error: altitude 54999 m is outside the gust, which is known from 55000 m to 57000 m\n"
+                .to_owned(),
         ),
     ] {
         let arguments = [arguments.as_slice(), &["--out", &out]].concat();
         let refused = aerobot(&arguments);
         assert_eq!(refused.status.code(), Some(2), "{refused:?}");
         let message = text(&refused.stderr);
-        assert!(message.starts_with(&expected), "expected {expected}found {message}");
+        assert!(
+            message.starts_with(&expected),
+            "expected {expected}found {message}"
+        );
         assert!(!scratch.0.join("out").exists());
     }
 }

@@ -229,7 +229,7 @@ pub enum WindSpec {
         file: String,
     },
     /// A stochastic gust.
-    Gust(GustSpec),
+    Gust(Box<GustSpec>),
 }
 
 impl WindSpec {

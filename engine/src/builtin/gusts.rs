@@ -7,7 +7,8 @@ use aerobot_components::gust::{
 use aerobot_components::run::IntegratorSpec;
 use aerobot_components::scene_component::FieldReport;
 use aerobot_systems::environment::gust::GustAxis;
-use aerobot_systems::environment::gust::design::{GustDesign, GustField, GustParameters, Layers};
+use aerobot_systems::environment::gust::design::{GustDesign, GustParameters, Layers};
+use aerobot_systems::environment::gust::refusal::GustField;
 use aerobot_systems::stochastic::complex_ornstein_uhlenbeck::ComplexOrnsteinUhlenbeck;
 use aerobot_systems::stochastic::marginal::Marginal;
 

@@ -12,9 +12,8 @@
 
 use std::sync::Arc;
 
-use thiserror::Error;
-
 use super::parent::{Across, Parent};
+use super::refusal::{GustError, MOST_LEVELS};
 use crate::stochastic::complex_ornstein_uhlenbeck::ComplexOrnsteinUhlenbeck;
 use crate::stochastic::hermite_series::HermiteSeries;
 use crate::stochastic::linear_prediction::LinearPrediction;
@@ -24,13 +23,11 @@ use crate::stochastic::normal_draws::NormalDraws;
 /// The part of the variance that a grid may lose without being asked to.
 pub const MOST_LOSS: f64 = 0.01;
 /// What a grid that was not given loses in time, and over altitude, at most.
-const DEFAULT_LOSS: f64 = 0.005;
+pub(super) const DEFAULT_LOSS: f64 = 0.005;
 /// A corrected autocorrelation is exact down to this part of its envelope.
 const FORGOTTEN: f64 = 1e-3;
 /// More lags than this would cost more than the flight.
 const MOST_LAGS: f64 = 10_000.0;
-/// More levels than this are a slip of the pen.
-const MOST_LEVELS: f64 = 20_000.0;
 
 /// What a scene says about a gust along one axis; numbers are checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -102,123 +99,6 @@ impl Levels {
         let level = (place as usize).min(self.count - 2);
         Some((level, place - level as f64))
     }
-}
-
-/// Why there is no such gust.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum GustError {
-    /// A grid in time or over altitude loses too much.
-    #[error("{knots} {step} {unit} apart lose {percent:.2} % of the variance on average")]
-    LosesTooMuch {
-        /// The distance of knots.
-        step: f64,
-        /// Its unit.
-        unit: &'static str,
-        /// What they are.
-        knots: &'static str,
-        /// All that is lost, in percent.
-        percent: f64,
-        /// What loses [`DEFAULT_LOSS`] at most.
-        enough: f64,
-    },
-    /// Velocities of this marginal cannot be anticorrelated that much.
-    #[error(
-        "the autocorrelation is {wanted:.4} at {lag_s} s, and this marginal cannot have less than {least:.4}"
-    )]
-    Unreachable {
-        /// The lag, s.
-        lag_s: f64,
-        /// What is stated there.
-        wanted: f64,
-        /// The least there is.
-        least: f64,
-    },
-    /// The corrected autocorrelation is that of no process.
-    #[error(
-        "no normal process leads to this autocorrelation: corrected for the marginal it is impossible at \
-         the lag of {lag_s} s"
-    )]
-    NotPositiveDefinite {
-        /// The lag, s.
-        lag_s: f64,
-    },
-    /// Too many lags to correct.
-    #[error(
-        "{grid_s} s is too fine a grid to correct the autocorrelation on: it takes {lags:.0} lags"
-    )]
-    TooManyLags {
-        /// The grid, s.
-        grid_s: f64,
-        /// How many there would be.
-        lags: f64,
-        /// What would do, s.
-        enough: f64,
-    },
-    /// Too many levels.
-    #[error("the altitudes take {count:e} levels of {level_m} m, more than {MOST_LEVELS:e}")]
-    TooManyLevels {
-        /// How many there would be.
-        count: f64,
-        /// Their distance, m.
-        level_m: f64,
-    },
-}
-
-impl GustError {
-    /// The field at fault.
-    #[must_use]
-    pub fn field(&self) -> GustField {
-        match self {
-            Self::LosesTooMuch {
-                knots: "levels", ..
-            }
-            | Self::TooManyLevels { .. } => GustField::OfSource("coherence.level_m"),
-            Self::LosesTooMuch { .. } | Self::TooManyLags { .. } => GustField::OfAxis("grid_s"),
-            Self::Unreachable { .. } | Self::NotPositiveDefinite { .. } => {
-                GustField::OfAxis("autocorrelation")
-            }
-        }
-    }
-
-    /// What would do.
-    #[must_use]
-    pub fn help(&self) -> String {
-        match self {
-            Self::LosesTooMuch {
-                knots,
-                unit,
-                enough,
-                ..
-            } => {
-                let field = if *knots == "levels" { "level_m" } else { "grid_s" };
-                format!(
-                    "{enough} {unit}, which `{field}` is unless given, loses at most {} %; with \
-                     `allow_loss: true` any grid is taken",
-                    100.0 * DEFAULT_LOSS
-                )
-            }
-            Self::Unreachable { .. } | Self::NotPositiveDefinite { .. } => {
-                "with `autocorrelation: Parent` the normal process behind the gust has the stated one; a \
-                 larger `decay_per_s` or a less skewed marginal may do too"
-                    .to_owned()
-            }
-            Self::TooManyLags { enough, .. } => {
-                format!("give a grid of {enough:.3} s or more, or `autocorrelation: Parent`")
-            }
-            Self::TooManyLevels { .. } => {
-                "give a larger `level_m`, or altitudes closer to where the flight goes".to_owned()
-            }
-        }
-    }
-}
-
-/// Where a field stands in a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GustField {
-    /// Below the source of wind.
-    OfSource(&'static str),
-    /// Below the axis.
-    OfAxis(&'static str),
 }
 
 /// A gust along one axis, ready to be drawn.
@@ -387,8 +267,7 @@ impl GustDesign {
         let enough_m = self.default_level_m(layers.decay_length_m);
         let level_m = layers.level_m.unwrap_or(enough_m);
         let count = ((layers.to_m - layers.from_m) / level_m).ceil() + 1.0;
-        // Not so for NaN either.
-        if !(count <= MOST_LEVELS) {
+        if count.is_nan() || count > MOST_LEVELS {
             return Err(GustError::TooManyLevels { count, level_m });
         }
         let ratio = level_m / layers.decay_length_m;
@@ -440,8 +319,7 @@ impl GustDesign {
         }
         let memory_s = -libm::log(FORGOTTEN) / process.decay_per_s;
         let lags = (memory_s / self.grid_s).ceil();
-        // Not so for NaN either.
-        if !(lags <= MOST_LAGS) {
+        if lags.is_nan() || lags > MOST_LAGS {
             return Err(GustError::TooManyLags {
                 grid_s: self.grid_s,
                 lags,

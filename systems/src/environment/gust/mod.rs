@@ -21,10 +21,12 @@
 
 pub mod design;
 pub mod parent;
+pub mod refusal;
 pub mod statistics;
 
-use design::{GustDesign, GustError, GustParameters, Levels};
+use design::{GustDesign, GustParameters, Levels};
 use parent::Parent;
+use refusal::GustError;
 
 /// At most this many numbers are kept of what has passed, and never fewer than `LEAST_KNOTS` knots: a step
 /// that is repeated goes back by less.
