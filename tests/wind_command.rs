@@ -180,7 +180,7 @@ fn what_cannot_be_done_is_refused_with_the_reason() {
         ),
         (
             vec!["wind", "sample", SCENE, "--every", "1e-9"],
-            "error: 100 s in steps of 0.000000001 s are more than 1e8 rows\n".to_owned(),
+            "error: 100 s in steps of 0.000000001 s are more than 2e7 rows\n".to_owned(),
         ),
         (
             vec!["wind", "sample", SCENE, "--altitude", "54999"],

@@ -10,7 +10,7 @@ use aerobot_systems::gust_fit::series::{Series, read_series};
 use aerobot_systems::gust_fit::{Estimate, GustFit, fit as fit_gust};
 
 use super::{AxisName, FitArguments, MarginalName};
-use crate::cli::finding::{Found, tell_found};
+use crate::cli::finding::{Found, tell_found, write_whole};
 
 /// In a record of fewer correlation times, intervals are too narrow.
 const LEAST_CORRELATION_TIMES: f64 = 30.0;
@@ -46,8 +46,7 @@ fn find_and_write(arguments: &FitArguments) -> Result<Found, String> {
     })?;
     let block = block(&found, &series, &name, arguments.axis);
     if let Some(file) = &arguments.out {
-        fs::write(file, &block)
-            .map_err(|error| format!("error: cannot write `{}`: {error}", file.display()))?;
+        write_whole(file, |out| out.write_all(block.as_bytes()))?;
     }
     Ok(Found {
         text: format!("{}\n{block}", describe(&found, &series, &name)),

@@ -1,9 +1,7 @@
 //! `aerobot wind sample`.
 
 use std::fmt::Write as _;
-use std::fs::File;
-use std::io::{self, BufWriter, Write as _};
-use std::path::Path;
+use std::io::{self, BufWriter, Write};
 use std::process::ExitCode;
 
 use aerobot_engine::builtin::environment::environment_model;
@@ -17,10 +15,10 @@ use aerobot_systems::environment::gust::statistics::statistics;
 use aerobot_systems::environment::wind::{OutsideWindProfile, Wind};
 
 use super::SampleArguments;
-use crate::cli::finding::{Found, tell_found};
+use crate::cli::finding::{Found, tell_found, write_whole};
 
 /// More rows, or knots of one gust, than this are a slip of the pen.
-const MOST_ROWS: f64 = 1e8;
+const MOST_ROWS: f64 = 2e7;
 /// In a record of fewer correlation times, the errors that are printed are no more than a hint.
 const LEAST_CORRELATION_TIMES: f64 = 10.0;
 
@@ -45,9 +43,7 @@ fn find_and_write(simulator: &Simulator, arguments: &SampleArguments) -> Result<
         sampling
             .check_altitudes(&wind)
             .map_err(|error| format!("error: {error}"))?;
-        sampling
-            .write(&mut wind, file)
-            .map_err(|error| format!("error: cannot write `{}`: {error}", file.display()))?;
+        write_whole(file, |out| sampling.write(&mut wind, out))?;
     }
     let gusts: Vec<&GustAxis> = wind.gusts().collect();
     let mut found = Found {
@@ -119,8 +115,8 @@ impl Sampling {
         altitudes.try_for_each(|altitude_m| wind.velocity_m_s(*altitude_m).map(|_| ()))
     }
 
-    fn write(&self, wind: &mut Wind, file: &Path) -> io::Result<()> {
-        let mut out = BufWriter::new(File::create(file)?);
+    fn write(&self, wind: &mut Wind, out: &mut dyn Write) -> io::Result<()> {
+        let mut out = BufWriter::new(out);
         let is_layered = !self.altitudes_m.is_empty();
         let altitude = if is_layered { "altitude_m," } else { "" };
         writeln!(
@@ -198,7 +194,11 @@ fn table(gust: &GustAxis, seed: u64, duration_s: f64) -> String {
         let _ = writeln!(
             text,
             "  {:<42} {:>11.5} {:>11.5} {:>11.5} {off:>8}",
-            row.name, row.found, row.theory, row.error
+            row.name,
+            row.found,
+            // Minus zero reads as a difference where there is none.
+            row.theory + 0.0,
+            row.error
         );
     }
     text

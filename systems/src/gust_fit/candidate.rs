@@ -68,7 +68,11 @@ impl Kind {
         };
         let count = speeds.len() as f64;
         let mean = speeds.iter().map(seen).sum::<f64>() / count;
-        let square = speeds.iter().map(|y| (seen(y) - mean).powi(2)).sum::<f64>() / count;
+        let square = speeds
+            .iter()
+            .map(|y| (seen(y) - mean) * (seen(y) - mean))
+            .sum::<f64>()
+            / count;
         let spread = square.sqrt().max(f64::MIN_POSITIVE);
         match self {
             Self::Normal | Self::Lognormal => [mean, libm::log(spread)],

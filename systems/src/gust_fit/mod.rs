@@ -77,6 +77,9 @@ pub struct GustFit {
 /// Fits the likeliest of `kinds`; `None` if there is no maximum, as where the series is too short to show one.
 #[must_use]
 pub fn fit(series: &Series, kinds: &[Kind]) -> Option<GustFit> {
+    if series.times_s.len() < 2 {
+        return None;
+    }
     let is_positive = series.speeds_m_s.iter().all(|speed| *speed > 0.0);
     let usable = kinds
         .iter()

@@ -13,7 +13,7 @@
 //! 42-43; Grigoriu (1995), Applied Non-Gaussian Processes, 3.1.
 //!
 //! Assumptions: g has a variance. Expectations are sums over equidistant points, whose error is below
-//! round-off for a smooth g. What is left of the variance after [`TERMS`] terms goes to the next power.
+//! round-off for a smooth g. What is left of the variance after 60 terms goes to the next power.
 
 use super::normal_distribution::density;
 
@@ -28,7 +28,7 @@ const HALVINGS: usize = 60;
 /// The series of one function.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HermiteSeries {
-    /// E[Y].
+    /// `E[Y]`.
     pub mean: f64,
     /// var Y.
     pub variance: f64,

@@ -80,7 +80,7 @@ impl Marginal {
         }
     }
 
-    /// E[Y], m/s.
+    /// `E[Y]`, m/s.
     #[must_use]
     pub fn mean_m_s(&self) -> f64 {
         match self {

@@ -8,7 +8,7 @@
 //!
 //! Where the velocity itself is to have the stated autocorrelation, that of the normal process is corrected
 //! for what the marginal does to it ([`HermiteSeries`]), as far as the lag at which e^(-alpha tau) is
-//! [`FORGOTTEN`]; it need not exist.
+//! a thousandth; it need not exist.
 
 use std::sync::Arc;
 

@@ -21,7 +21,7 @@ pub enum GustError {
         knots: &'static str,
         /// All that is lost, in percent.
         percent: f64,
-        /// What loses [`DEFAULT_LOSS`] at most.
+        /// What would be chosen if none were given.
         enough: f64,
     },
     /// Velocities of this marginal cannot be anticorrelated that much.

@@ -188,7 +188,15 @@ fn part_below(
         .iter()
         .map(|speed| f64::from(*speed <= speed_m_s));
     Statistic {
-        name: format!("part below {speed_m_s:.4} m/s"),
+        // A median of zero is no negative one.
+        name: format!(
+            "part below {:.4} m/s",
+            if x.abs() < 1e-12 {
+                design.velocity_m_s(0.0)
+            } else {
+                speed_m_s
+            }
+        ),
         found: mean(below),
         theory: probability,
         error: error.of_part_below(x),

@@ -437,6 +437,37 @@ fn the_correlation_over_altitude_decays_with_its_length() {
     }
 }
 
+/// A corrected process has the same correlation over altitude as one that is not.
+#[test]
+fn a_corrected_gust_is_correlated_over_altitude_too() {
+    let mut parameters = layered();
+    parameters.marginal = Marginal::Lognormal {
+        median_m_s: 1.0,
+        log_standard_deviation: 0.5,
+    };
+    parameters.process.frequency_rad_s = 0.3;
+    parameters.is_target = true;
+    let gust = GustAxis::new(parameters, 0).unwrap();
+    let (levels, apart) = (gust.levels(), 70);
+    assert!(gust.design().is_corrected());
+    let products: Vec<Vec<f64>> = (0..48)
+        .map(|seed| {
+            let (mut parent, mut row) = (gust.design().parent(seed), Vec::new());
+            (0..500).for_each(|_| parent.next(&mut row));
+            let rows = row.chunks_exact(levels);
+            rows.map(|row| row[20] * row[20 + apart]).collect()
+        })
+        .collect();
+    let (found, error) = over(&products, |products| mean(products.iter().copied()));
+    let distance_m = apart as f64 * gust.design().levels.unwrap().spacing_m;
+    within(
+        found,
+        f64::exp(-distance_m / 1000.0),
+        error,
+        "parents 70 levels apart",
+    );
+}
+
 #[test]
 fn between_levels_the_gust_is_linear_and_beyond_them_unknown() {
     let mut gust = GustAxis::new(layered(), 4).unwrap();
