@@ -162,6 +162,7 @@ impl GustAxisSpec {
         report.non_negative("frequency_rad_s", self.frequency_rad_s);
         if let Some(mean_m_s) = self.mean_m_s {
             report.finite("mean_m_s", mean_m_s);
+            check_speed("mean_m_s", mean_m_s, report);
         }
         if let Some(grid_s) = self.grid_s {
             report.positive("grid_s", grid_s);
@@ -175,12 +176,16 @@ impl MarginalSpec {
         match self {
             Self::Normal {
                 standard_deviation_m_s,
-            } => report.non_negative("standard_deviation_m_s", *standard_deviation_m_s),
+            } => {
+                report.non_negative("standard_deviation_m_s", *standard_deviation_m_s);
+                check_speed("standard_deviation_m_s", *standard_deviation_m_s, report);
+            }
             Self::Lognormal {
                 median_m_s,
                 log_standard_deviation,
             } => {
                 report.positive("median_m_s", *median_m_s);
+                check_speed("median_m_s", *median_m_s, report);
                 report.positive("log_standard_deviation", *log_standard_deviation);
                 // Beyond it a lognormal has no variance that a record of any length would show.
                 if *log_standard_deviation > MOST_LOG_STANDARD_DEVIATION {
@@ -196,6 +201,7 @@ impl MarginalSpec {
             }
             Self::Weibull { scale_m_s, shape } => {
                 report.positive("scale_m_s", *scale_m_s);
+                check_speed("scale_m_s", *scale_m_s, report);
                 report.positive("shape", *shape);
                 if (0.0..LEAST_SHAPE).contains(shape) && *shape > 0.0 {
                     report.add(
@@ -207,6 +213,17 @@ impl MarginalSpec {
             }
             Self::Empirical { .. } => {}
         }
+    }
+}
+
+/// No wind has a speed near this, m/s, and its powers stay numbers.
+pub const MOST_SPEED_M_S: f64 = 1e6;
+
+fn check_speed(field: &str, speed_m_s: f64, report: &mut FieldReport) {
+    if speed_m_s.abs() > MOST_SPEED_M_S {
+        let message =
+            format!("`{field}` must not exceed {MOST_SPEED_M_S:e} m/s, it is {speed_m_s:e}");
+        report.add(field, message, "");
     }
 }
 

@@ -13,6 +13,7 @@ use aerobot_systems::stochastic::complex_ornstein_uhlenbeck::ComplexOrnsteinUhle
 use aerobot_systems::stochastic::marginal::Marginal;
 
 use super::environment::given_altitude;
+use crate::recording::number::number_text;
 use crate::scene::tables::Tables;
 use crate::scene::{Scene, SetupError};
 
@@ -192,7 +193,8 @@ fn check_knots(scene: &Scene, path: &str, design: &GustDesign, report: &mut Fiel
             &format!("{path}.grid_s"),
             format!(
                 "{} s with a knot every {} s are more than {MOST_KNOTS:e} knots",
-                scene.run.duration_s, design.grid_s
+                scene.run.duration_s,
+                number_text(design.grid_s)
             ),
             "a grid need not be finer than a small part of 1/`decay_per_s`",
         );
@@ -245,9 +247,9 @@ pub fn describe(gusts: &[&GustAxis]) -> Vec<String> {
             axes[design.parameters.axis],
             describe_marginal(&design.parameters.marginal),
             design.mean_m_s(),
-            process.decay_per_s,
-            process.frequency_rad_s,
-            design.grid_s,
+            number_text(process.decay_per_s),
+            number_text(process.frequency_rad_s),
+            number_text(design.grid_s),
             100.0 * design.loss_in_time(),
         )
     });

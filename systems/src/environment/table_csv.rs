@@ -23,6 +23,7 @@ use super::atmosphere_table::AtmosphereTable;
 use super::knots::{ColumnError, InterpolationError};
 use super::viscosity::Gas;
 use super::wind_profile::WindProfile;
+use aerobot_components::gust::MOST_SPEED_M_S;
 use thiserror::Error;
 
 /// What is wrong in a table, and where.
@@ -75,10 +76,20 @@ pub fn read_wind_profile(text: &str) -> Result<WindProfile, TableError> {
 /// Reads a sample of velocities, m/s, from CSV text with the column `speed_m_s`, in any order.
 ///
 /// # Errors
-/// As [`read_atmosphere`], except that velocities may have any sign; and a sample of one value only.
+/// As [`read_atmosphere`], except that velocities may have any sign; a sample of one value only, and a speed
+/// that no wind has.
 pub fn read_sample(text: &str) -> Result<Vec<f64>, TableError> {
     let table = Table::read(text, &[rule("speed_m_s", true)])?;
     let sample = table.values("speed_m_s").unwrap_or_default().to_vec();
+    let too_fast = sample.iter().position(|speed| speed.abs() > MOST_SPEED_M_S);
+    if let Some(row) = too_fast {
+        let (line, column) = (table.lines[row], table.columns[0].places[row]);
+        let message = format!(
+            "`speed_m_s` must not exceed {MOST_SPEED_M_S:e}: {:e}",
+            sample[row]
+        );
+        return Err(fault(line, column, message));
+    }
     if sample.iter().all(|value| *value == sample[0]) {
         let message = "a distribution needs at least 2 values that differ".into();
         return Err(fault(table.header_line, 1, message));
@@ -400,6 +411,11 @@ mod tests {
         assert_eq!(
             read_sample("speed_m_s\n3\n-1\n2\n"),
             Ok(vec![3.0, -1.0, 2.0])
+        );
+        let fast = read_sample("speed_m_s\n3\n -1e200\n").unwrap_err();
+        assert_eq!(
+            fast.to_string(),
+            "line 3, column 2: `speed_m_s` must not exceed 1e6: -1e200"
         );
         let constant = read_sample("# none\nspeed_m_s\n3\n3\n").unwrap_err();
         assert_eq!(
