@@ -3,6 +3,7 @@
 use glam::DVec3;
 use serde::Deserialize;
 
+use crate::gust::GustSpec;
 use crate::scene_component::FieldReport;
 
 /// Gravity, air and wind of a scene.
@@ -227,6 +228,8 @@ pub enum WindSpec {
         /// The file, relative to the scene.
         file: String,
     },
+    /// A stochastic gust.
+    Gust(Box<GustSpec>),
 }
 
 impl WindSpec {
@@ -272,6 +275,7 @@ impl WindSpec {
                 }
             }
             Self::VenusZonal | Self::Profile { .. } => {}
+            Self::Gust(gust) => gust.check(report),
         }
     }
 }

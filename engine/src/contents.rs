@@ -4,7 +4,9 @@ use aerobot_components::aerodynamics::SphereRadius;
 use aerobot_components::body::{Anchor, Body};
 use aerobot_components::state::{Mass, Position};
 use aerobot_components::tether::{Tether, TetherParts};
+use aerobot_systems::environment::EnvironmentModel;
 
+use crate::builtin::gusts;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::world::SceneEntities;
@@ -36,6 +38,8 @@ impl Simulation {
             scene.environment.gravity,
             scene.environment.wind.len()
         ));
+        let wind = &self.world().resource::<EnvironmentModel>().wind;
+        lines.extend(gusts::describe(&wind.gusts().collect::<Vec<_>>()));
         let stable = self.stable_step();
         if stable.step_s.is_finite() {
             lines.push(format!(

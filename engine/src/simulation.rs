@@ -2,6 +2,7 @@
 
 use aerobot_components::sampling::Sampling;
 use aerobot_systems::clock::Clock;
+use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::fault::{Fault, FaultSlot};
 use aerobot_systems::integration::{Cost, Equations, StepFailure};
 use bevy_ecs::query::QueryState;
@@ -15,6 +16,9 @@ use crate::scene::{Scene, SceneError};
 use crate::sequence::Sequence;
 use crate::stable_step::StableStep;
 use crate::world::Edges;
+
+/// A step of less than this part of the one before it is none.
+const SLIVER: f64 = 1e-6;
 
 /// A built simulation.
 pub struct Simulation {
@@ -155,6 +159,12 @@ impl Simulation {
             if sampling.next_s() > time_s {
                 limit_s = limit_s.min(sampling.next_s());
             }
+        }
+        let wind = &self.world.resource::<EnvironmentModel>().wind;
+        let knot_s = wind.step_limit_s(time_s);
+        // A knot that round-off parts from the limit would leave a sliver.
+        if limit_s - knot_s > SLIVER * (knot_s - time_s) {
+            limit_s = knot_s;
         }
         limit_s
     }

@@ -1,6 +1,8 @@
 //! What commands share that build a scene, find something about it, print that and may write it to a file.
 
-use std::path::Path;
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use aerobot_engine::plugin::Simulator;
@@ -43,12 +45,21 @@ pub(super) fn tell(
     arguments: &FindArguments,
     out: Option<&Path>,
 ) -> ExitCode {
+    tell_found(found, arguments.quiet, out)
+}
+
+/// The same for a command with arguments of its own.
+pub(super) fn tell_found(
+    found: Result<Found, String>,
+    quiet: bool,
+    out: Option<&Path>,
+) -> ExitCode {
     match found {
         Ok(found) => {
             for warning in &found.warnings {
                 complain(format_args!("warning: {warning}"));
             }
-            if !arguments.quiet {
+            if !quiet {
                 say(found.text.trim_end());
                 if let Some(file) = out {
                     say(format_args!("{}: `{}`", found.written, file.display()));
@@ -61,4 +72,24 @@ pub(super) fn tell(
             ExitCode::from(REFUSED)
         }
     }
+}
+
+/// Writes a file whole or not at all.
+///
+/// # Errors
+/// The message for the user.
+pub(super) fn write_whole(
+    file: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), String> {
+    let mut part = file.as_os_str().to_owned();
+    part.push(".part");
+    let part = PathBuf::from(part);
+    File::create(&part)
+        .and_then(|mut out| write(&mut out))
+        .and_then(|()| fs::rename(&part, file))
+        .map_err(|error| {
+            let _ = fs::remove_file(&part);
+            format!("error: cannot write `{}`: {error}", file.display())
+        })
 }

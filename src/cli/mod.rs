@@ -11,6 +11,7 @@ mod progress;
 mod reproduce;
 mod run;
 mod trim;
+mod wind;
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -46,6 +47,8 @@ enum Command {
     Trim(TrimArguments),
     /// Find the modes of small motions about the steady state: frequencies, damping, and who moves how.
     Modes(ModesArguments),
+    /// Fit stochastic gusts to measured winds, and draw them.
+    Wind(wind::WindArguments),
 }
 
 /// What every command that reads a scene takes.
@@ -245,5 +248,6 @@ pub fn main(plugins: &[&dyn Plugin]) -> ExitCode {
         Command::Reproduce(arguments) => reproduce::reproduce(&simulator, &arguments),
         Command::Trim(arguments) => trim::trim(&simulator, &arguments),
         Command::Modes(arguments) => modes::modes(&simulator, &arguments),
+        Command::Wind(arguments) => wind::wind(&simulator, &arguments),
     }
 }

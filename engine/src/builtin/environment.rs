@@ -7,10 +7,12 @@ use aerobot_components::scene_component::FieldReport;
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::environment::air_at::air_at_entities;
 use aerobot_systems::environment::atmosphere::Atmosphere;
+use aerobot_systems::environment::gusts_at::advance_gusts;
 use aerobot_systems::environment::wind::{Wind, WindSource};
 use aerobot_systems::environment::wind_profile::WindProfile;
 use bevy_ecs::world::World;
 
+use super::gusts;
 use crate::plugin::{Plugin, Simulator};
 use crate::scene::tables::{Tables, gas_of};
 use crate::scene::{Scene, SceneEntity, SetupError};
@@ -25,13 +27,15 @@ impl Plugin for EnvironmentPlugin {
         simulator
             .add_check(check_temperature)
             .add_check(check_altitudes)
+            .add_check(gusts::check)
             .add_setup(set_up)
+            .add_systems_if(Phase::Environment, gusts::has_gusts, || advance_gusts)
             .add_systems(Phase::Environment, || air_at_entities);
     }
 }
 
 fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
-    let model = environment_model(&scene.environment, &scene.tables);
+    let model = environment_model(scene)?;
     world.resource_mut::<Edges>().add(model.wind.edges_s());
     // The start of the run is an edge too: the first interval begins there.
     world.resource_mut::<Edges>().add([0.0]);
@@ -39,20 +43,23 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
     Ok(())
 }
 
-/// The model that a scene's environment describes; its tables have been read.
-#[must_use]
-pub fn environment_model(environment: &Environment, tables: &Tables) -> EnvironmentModel {
+/// The model that a scene's environment describes, under the seed of its run.
+///
+/// # Errors
+/// A gust that cannot be; the checks of the scene refuse it before.
+pub fn environment_model(scene: &Scene) -> Result<EnvironmentModel, SetupError> {
+    let environment = &scene.environment;
     let sources = environment
         .wind
         .iter()
         .enumerate()
-        .filter_map(|(index, wind)| wind_source(wind, index, tables))
+        .filter_map(|(index, wind)| wind_source(wind, index, &scene.tables))
         .collect();
-    EnvironmentModel {
+    Ok(EnvironmentModel {
         gravity: environment.gravity,
-        atmosphere: atmosphere(environment, tables),
-        wind: Wind::new(sources),
-    }
+        atmosphere: atmosphere(environment, &scene.tables),
+        wind: Wind::new(sources).with_gusts(gusts::draw(scene)?),
+    })
 }
 
 /// The air that a scene describes.
@@ -116,6 +123,7 @@ fn wind_source(wind: &WindSpec, index: usize, tables: &Tables) -> Option<WindSou
         },
         WindSpec::VenusZonal => WindSource::Profile(WindProfile::venus_zonal()),
         WindSpec::Profile { .. } => WindSource::Profile(tables.winds.get(&index)?.clone()),
+        WindSpec::Gust(_) => return None,
     })
 }
 
@@ -161,7 +169,7 @@ fn check_altitudes(scene: &Scene, report: &mut FieldReport) {
 }
 
 /// Where an entity that meets the air is put by the scene: the field, and the altitude in m.
-fn given_altitude(entity: &SceneEntity) -> Option<(&'static str, f64)> {
+pub(super) fn given_altitude(entity: &SceneEntity) -> Option<(&'static str, f64)> {
     if let Some(RadiusRule::Equilibrium { altitude_m }) =
         entity.get::<Sphere>().and_then(|sphere| sphere.radius)
     {

@@ -5,6 +5,7 @@ pub mod bodies;
 pub mod channels;
 pub mod environment;
 pub mod events;
+pub mod gusts;
 pub mod links;
 pub mod recorder;
 pub mod slack_events;

@@ -4,9 +4,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use aerobot_components::environment::{AtmosphereSpec, Environment, GasSpec, WindSpec};
+use aerobot_components::gust::{GustSpec, MarginalSpec};
 use aerobot_components::scene_component::FieldReport;
 use aerobot_systems::environment::atmosphere_table::AtmosphereTable;
-use aerobot_systems::environment::table_csv::{TableError, read_atmosphere, read_wind_profile};
+use aerobot_systems::environment::table_csv::{
+    TableError, read_atmosphere, read_sample, read_wind_profile,
+};
 use aerobot_systems::environment::viscosity::Gas;
 use aerobot_systems::environment::wind_profile::WindProfile;
 
@@ -17,6 +20,8 @@ pub struct Tables {
     pub atmosphere: Option<AtmosphereTable>,
     /// Wind profiles by their place in the list of winds.
     pub winds: BTreeMap<usize, WindProfile>,
+    /// Samples of velocities (m/s) by the file that the scene names.
+    pub samples: BTreeMap<String, Vec<f64>>,
     /// Every file that was read, by the path that the scene gives it, with its text.
     pub files: BTreeMap<String, String>,
 }
@@ -30,6 +35,15 @@ impl Tables {
                 .text("environment.atmosphere.file", file, folder, report)
                 .map(|text| read_atmosphere(&text, gas_of(*gas)))
                 .and_then(|result| accept("environment.atmosphere.file", file, result, report));
+        }
+        for (path, file) in samples(environment) {
+            let sample = tables
+                .text(&path, file, folder, report)
+                .map(|text| read_sample(&text))
+                .and_then(|result| accept(&path, file, result, report));
+            if let Some(sample) = sample {
+                tables.samples.insert(file.to_owned(), sample);
+            }
         }
         for (index, wind) in environment.wind.iter().enumerate() {
             let WindSpec::Profile { file } = wind else {
@@ -59,6 +73,7 @@ impl Tables {
                 paths.push((format!("environment.wind.{index}.file"), file.clone()));
             }
         }
+        paths.extend(samples(environment).map(|(path, file)| (path, file.to_owned())));
         paths
     }
 
@@ -84,6 +99,27 @@ impl Tables {
             }
         }
     }
+}
+
+/// The samples that gusts name: the path of the field, and the file.
+fn samples(environment: &Environment) -> impl Iterator<Item = (String, &str)> {
+    let gusts = environment.wind.iter().enumerate();
+    let gusts = gusts.filter_map(|(index, wind)| match wind {
+        WindSpec::Gust(gust) => Some((index, gust)),
+        _ => None,
+    });
+    gusts.flat_map(|(index, gust)| samples_of(index, gust))
+}
+
+fn samples_of(index: usize, gust: &GustSpec) -> impl Iterator<Item = (String, &str)> {
+    let axes = gust.axes().into_iter();
+    axes.filter_map(move |(name, axis)| match &axis?.marginal {
+        MarginalSpec::Empirical { file } => {
+            let path = format!("environment.wind.{index}.{name}.marginal.file");
+            Some((path, file.as_str()))
+        }
+        _ => None,
+    })
 }
 
 fn accept<T>(

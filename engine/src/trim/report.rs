@@ -187,17 +187,25 @@ fn residual(world: &mut World) -> Residual {
 
 fn notes(world: &World) -> Vec<String> {
     let wind = &world.resource::<EnvironmentModel>().wind;
+    let mut notes = Vec::new();
+    if wind.gusts().next().is_some() {
+        notes.push(format!(
+            "the wind has stochastic gusts: this is the steady state in them as they are at {} s",
+            world.resource::<Clock>().time_s
+        ));
+    }
     let edges = wind.edges_s();
     if edges.is_empty() {
-        return Vec::new();
+        return notes;
     }
     let times: Vec<String> = edges.iter().take(4).map(|edge| format!("{edge}")).collect();
     let more = if edges.len() > 4 { ", .." } else { "" };
-    vec![format!(
+    notes.push(format!(
         "the wind changes at {}{more} s: this is the steady state in the wind as it stands at {} s",
         times.join(", "),
         world.resource::<Clock>().time_s
-    )]
+    ));
+    notes
 }
 
 fn warnings(world: &World, systems: &[SteadySystem], residual: &Residual) -> Vec<String> {

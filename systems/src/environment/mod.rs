@@ -4,6 +4,8 @@ pub mod air_at;
 pub mod atmosphere;
 pub mod atmosphere_table;
 pub mod exponential_cells;
+pub mod gust;
+pub mod gusts_at;
 pub mod knots;
 pub mod monotone_cubic;
 pub mod sphere_drag;

@@ -12,6 +12,7 @@
 //! | `zonal_m_s` | velocity of the air along x | m/s | wind |
 //! | `meridional_m_s` | velocity of the air along y | m/s | wind, optional |
 //! | `vertical_m_s` | velocity of the air along z | m/s | wind, optional |
+//! | `speed_m_s` | one velocity of a sample | m/s | sample |
 //!
 //! Source: RFC 4180 (Shafranovich 2005), of which it is a subset.
 //!
@@ -22,6 +23,7 @@ use super::atmosphere_table::AtmosphereTable;
 use super::knots::{ColumnError, InterpolationError};
 use super::viscosity::Gas;
 use super::wind_profile::WindProfile;
+use aerobot_components::gust::MOST_SPEED_M_S;
 use thiserror::Error;
 
 /// What is wrong in a table, and where.
@@ -71,6 +73,30 @@ pub fn read_wind_profile(text: &str) -> Result<WindProfile, TableError> {
     .map_err(|error| table.locate(&error))
 }
 
+/// Reads a sample of velocities, m/s, from CSV text with the column `speed_m_s`, in any order.
+///
+/// # Errors
+/// As [`read_atmosphere`], except that velocities may have any sign; a sample of one value only, and a speed
+/// that no wind has.
+pub fn read_sample(text: &str) -> Result<Vec<f64>, TableError> {
+    let table = Table::read(text, &[rule("speed_m_s", true)])?;
+    let sample = table.values("speed_m_s").unwrap_or_default().to_vec();
+    let too_fast = sample.iter().position(|speed| speed.abs() > MOST_SPEED_M_S);
+    if let Some(row) = too_fast {
+        let (line, column) = (table.lines[row], table.columns[0].places[row]);
+        let message = format!(
+            "`speed_m_s` must not exceed {MOST_SPEED_M_S:e}: {:e}",
+            sample[row]
+        );
+        return Err(fault(line, column, message));
+    }
+    if sample.iter().all(|value| *value == sample[0]) {
+        let message = "a distribution needs at least 2 values that differ".into();
+        return Err(fault(table.header_line, 1, message));
+    }
+    Ok(sample)
+}
+
 /// A column that a table may have.
 struct ColumnRule {
     name: &'static str,
@@ -96,9 +122,9 @@ const WIND_COLUMNS: [ColumnRule; 4] = [
 ];
 
 /// A field of a line, without blanks and quotes, and the character it begins at, from 1.
-struct Field<'a> {
-    text: &'a str,
-    column: usize,
+pub(crate) struct Field<'a> {
+    pub(crate) text: &'a str,
+    pub(crate) column: usize,
 }
 
 /// One column as read, with the place of each value.
@@ -249,7 +275,7 @@ fn read_number(line: usize, field: &Field, name: &str) -> Result<f64, TableError
 }
 
 /// The fields of a line with their places.
-fn fields(line: &str) -> Vec<Field<'_>> {
+pub(crate) fn fields(line: &str) -> Vec<Field<'_>> {
     let mut next_column = 1;
     line.split(',')
         .map(|raw| {
@@ -277,7 +303,7 @@ fn names(rules: &[ColumnRule]) -> String {
     names.join(", ")
 }
 
-fn fault(line: usize, column: usize, message: String) -> TableError {
+pub(crate) fn fault(line: usize, column: usize, message: String) -> TableError {
     TableError {
         line,
         column,
@@ -378,6 +404,24 @@ mod tests {
                 expected
             );
         }
+    }
+
+    #[test]
+    fn a_sample_is_one_column_in_any_order() {
+        assert_eq!(
+            read_sample("speed_m_s\n3\n-1\n2\n"),
+            Ok(vec![3.0, -1.0, 2.0])
+        );
+        let fast = read_sample("speed_m_s\n3\n -1e200\n").unwrap_err();
+        assert_eq!(
+            fast.to_string(),
+            "line 3, column 2: `speed_m_s` must not exceed 1e6: -1e200"
+        );
+        let constant = read_sample("# none\nspeed_m_s\n3\n3\n").unwrap_err();
+        assert_eq!(
+            constant.to_string(),
+            "line 2, column 1: a distribution needs at least 2 values that differ"
+        );
     }
 
     #[test]

@@ -5,11 +5,12 @@
 //!                   (z - z0) s e                            shear, zero at z0
 //!                   V  for t in [from, until), else 0       step gust
 //!                   P(z)                                    profile, see wind_profile.rs
+//!                   Y(z, t) e                               stochastic gust, see gust/
 //! ```
 //!
 //! | symbol | meaning | unit |
 //! |---|---|---|
-//! | W, U, V, P | velocity of the air in the inertial frame | m/s |
+//! | W, U, V, P, Y | velocity of the air in the inertial frame | m/s |
 //! | z, z0 | altitude, altitude without shear wind | m |
 //! | s, e | gradient, unit vector | 1/s, 1 |
 //! | t | time | s |
@@ -18,8 +19,11 @@
 //!
 //! Assumptions: no dependence on the horizontal. A step gust is sharp, and the integrator never
 //! steps across one of its edges ([`Wind::edges_s`]): [`Wind::begin_interval`] fixes which steps
-//! blow, once for a whole interval between edges.
+//! blow, once for a whole interval between edges. A stochastic gust is continuous: nothing
+//! switches at its knots; [`Wind::advance_gusts`] makes the time of an evaluation its present, and
+//! [`Wind::step_limit_s`] says where a step should end that is to see all of it.
 
+use super::gust::GustAxis;
 use super::wind_profile::WindProfile;
 use glam::DVec3;
 use thiserror::Error;
@@ -27,10 +31,12 @@ use thiserror::Error;
 /// An altitude where the wind is not known, or one that is not a number.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error(
-    "altitude {altitude_m} m is outside the wind profile, which is known from {lowest_m} m to \
+    "altitude {altitude_m} m is outside the {source_of_wind}, which is known from {lowest_m} m to \
      {highest_m} m"
 )]
 pub struct OutsideWindProfile {
+    /// Which kind of source ends there.
+    pub source_of_wind: &'static str,
     /// The altitude asked for, m.
     pub altitude_m: f64,
     /// The lowest altitude of the profile, m; -inf where it has none.
@@ -152,6 +158,7 @@ impl WindSource {
             _ => (f64::NEG_INFINITY, f64::INFINITY),
         };
         OutsideWindProfile {
+            source_of_wind: "wind profile",
             altitude_m,
             lowest_m,
             highest_m,
@@ -160,13 +167,19 @@ impl WindSource {
 }
 
 /// The sum of wind sources.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Wind {
     /// Sources that are the same at every altitude.
     level: Vec<WindSource>,
     /// Sources that depend on altitude.
     layered: Vec<WindSource>,
+    /// Gusts that are the same at every altitude.
+    level_gusts: Vec<GustAxis>,
+    /// Gusts that depend on altitude.
+    layered_gusts: Vec<GustAxis>,
     /// Sum of `level` over the present interval, m/s.
+    interval_m_s: DVec3,
+    /// That and `level_gusts` at present, m/s.
     level_m_s: DVec3,
 }
 
@@ -180,10 +193,30 @@ impl Wind {
         let mut wind = Self {
             level,
             layered,
+            level_gusts: Vec::new(),
+            layered_gusts: Vec::new(),
+            interval_m_s: DVec3::ZERO,
             level_m_s: DVec3::ZERO,
         };
         wind.begin_interval(f64::NEG_INFINITY);
         wind
+    }
+
+    /// The same wind with stochastic gusts, as they are at their present.
+    #[must_use]
+    pub fn with_gusts(mut self, gusts: Vec<GustAxis>) -> Self {
+        let (layered, level): (Vec<_>, Vec<_>) = gusts
+            .into_iter()
+            .partition(|gust| gust.design().levels.is_some());
+        self.level_gusts.extend(level);
+        self.layered_gusts.extend(layered);
+        self.sum_level();
+        self
+    }
+
+    /// Its stochastic gusts.
+    pub fn gusts(&self) -> impl Iterator<Item = &GustAxis> {
+        self.level_gusts.iter().chain(&self.layered_gusts)
     }
 
     /// No wind.
@@ -215,9 +248,14 @@ impl Wind {
     pub fn scaled(&self, factor: f64) -> Self {
         let scaled =
             |sources: &[WindSource]| sources.iter().map(|source| source.scaled(factor)).collect();
+        let scaled_gusts =
+            |gusts: &[GustAxis]| gusts.iter().map(|gust| gust.scaled(factor)).collect();
         Self {
             level: scaled(&self.level),
             layered: scaled(&self.layered),
+            level_gusts: scaled_gusts(&self.level_gusts),
+            layered_gusts: scaled_gusts(&self.layered_gusts),
+            interval_m_s: factor * self.interval_m_s,
             level_m_s: factor * self.level_m_s,
         }
     }
@@ -225,17 +263,40 @@ impl Wind {
     /// Fixes the step gusts that blow from `start_s` (s) until the next edge, and sums what does
     /// not depend on altitude.
     pub fn begin_interval(&mut self, start_s: f64) {
-        self.level_m_s = self
+        self.interval_m_s = self
             .level
             .iter()
             .filter_map(|source| source.level_velocity_m_s(start_s))
             .sum();
+        self.sum_level();
+    }
+
+    /// Makes a time (s) the present of the stochastic gusts.
+    pub fn advance_gusts(&mut self, time_s: f64) {
+        for gust in self.level_gusts.iter_mut().chain(&mut self.layered_gusts) {
+            gust.advance_to(time_s);
+        }
+        self.sum_level();
+    }
+
+    /// The time (s) after `time_s` at which a step should end at the latest for the sake of the gusts.
+    #[must_use]
+    pub fn step_limit_s(&self, time_s: f64) -> f64 {
+        let limits = self.gusts().map(|gust| gust.step_limit_s(time_s));
+        limits.fold(f64::INFINITY, f64::min)
+    }
+
+    fn sum_level(&mut self) {
+        self.level_m_s = self.interval_m_s;
+        for gust in &self.level_gusts {
+            self.level_m_s[gust.design().parameters.axis] += gust.velocity_m_s();
+        }
     }
 
     /// Whether the wind depends on altitude.
     #[inline]
     pub fn depends_on_altitude(&self) -> bool {
-        !self.layered.is_empty()
+        !self.layered.is_empty() || !self.layered_gusts.is_empty()
     }
 
     /// The part of the velocity (m/s, inertial frame) that does not depend on altitude, within the
@@ -258,6 +319,11 @@ impl Wind {
                 .layered_velocity_m_s(altitude_m)
                 .ok_or_else(|| source.outside(altitude_m))?;
         }
+        for gust in &self.layered_gusts {
+            velocity_m_s[gust.design().parameters.axis] += gust
+                .velocity_at_m_s(altitude_m)
+                .ok_or_else(|| outside_gust(gust, altitude_m))?;
+        }
         Ok(velocity_m_s)
     }
 
@@ -273,135 +339,25 @@ impl Wind {
                 .slope_per_s(altitude_m)
                 .ok_or_else(|| source.outside(altitude_m))?;
         }
+        for gust in &self.layered_gusts {
+            slope_per_s[gust.design().parameters.axis] += gust
+                .slope_per_s(altitude_m)
+                .ok_or_else(|| outside_gust(gust, altitude_m))?;
+        }
         Ok(slope_per_s)
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_scaled_wind_is_the_wind_times_the_factor() {
-        let mut wind = Wind::new(vec![
-            WindSource::Uniform {
-                velocity_m_s: DVec3::new(1.0, 2.0, 3.0),
-            },
-            WindSource::Shear {
-                altitude_m: 1e3,
-                gradient_per_s: 1e-3,
-                direction: DVec3::Y,
-            },
-            WindSource::Step {
-                velocity_m_s: DVec3::Z,
-                from_s: 0.0,
-                until_s: 1.0,
-            },
-            WindSource::Profile(WindProfile::venus_zonal()),
-        ]);
-        wind.begin_interval(0.5);
-        let whole = wind.velocity_m_s(54_321.0).unwrap();
-        let part = wind.scaled(0.3).velocity_m_s(54_321.0).unwrap();
-        assert!((part - 0.3 * whole).length() < 1e-14 * whole.length());
-    }
-
-    fn step(x: f64, from_s: f64, until_s: f64) -> WindSource {
-        WindSource::Step {
-            velocity_m_s: DVec3::new(x, 0.0, 0.0),
-            from_s,
-            until_s,
-        }
-    }
-
-    fn shear() -> WindSource {
-        WindSource::Shear {
-            altitude_m: 56_000.0,
-            gradient_per_s: 0.002,
-            direction: DVec3::Y,
-        }
-    }
-
-    fn x_from(wind: &mut Wind, start_s: f64) -> f64 {
-        wind.begin_interval(start_s);
-        wind.velocity_m_s(0.0).unwrap().x
-    }
-
-    #[test]
-    fn a_step_blows_from_its_first_time_until_just_before_its_last() {
-        let mut wind = Wind::new(vec![step(5.0, 10.0, 20.0)]);
-        for (start_s, expected) in [
-            (0.0, 0.0),
-            (10.0_f64.next_down(), 0.0),
-            (10.0, 5.0),
-            (20.0_f64.next_down(), 5.0),
-            (20.0, 0.0),
-            (15.0, 5.0),
-        ] {
-            assert_eq!(x_from(&mut wind, start_s), expected, "at {start_s} s");
-        }
-    }
-
-    #[test]
-    fn overlapping_steps_add_and_edges_are_sorted_once() {
-        let mut wind = Wind::new(vec![
-            step(1.0, 20.0, 30.0),
-            step(2.0, 10.0, 20.0),
-            step(4.0, 15.0, f64::INFINITY),
-            step(8.0, f64::NEG_INFINITY, 10.0),
-        ]);
-        assert_eq!(wind.edges_s(), [10.0, 15.0, 20.0, 30.0]);
-        assert_eq!(wind.velocity_m_s(0.0).unwrap().x, 8.0);
-        for (start_s, expected) in [
-            (0.0, 8.0),
-            (10.0, 2.0),
-            (15.0, 6.0),
-            (20.0, 5.0),
-            (30.0, 4.0),
-        ] {
-            assert_eq!(x_from(&mut wind, start_s), expected, "at {start_s} s");
-        }
-    }
-
-    #[test]
-    fn shear_is_zero_at_its_altitude_and_linear() {
-        let wind = Wind::new(vec![shear()]);
-        assert_eq!(wind.velocity_m_s(56_000.0), Ok(DVec3::ZERO));
-        assert_eq!(wind.velocity_m_s(57_000.0), Ok(DVec3::new(0.0, 2.0, 0.0)));
-        assert_eq!(wind.velocity_m_s(54_000.0), Ok(DVec3::new(0.0, -4.0, 0.0)));
-        assert_eq!(wind.slope_per_s(0.0), Ok(DVec3::new(0.0, 0.002, 0.0)));
-        assert!(wind.depends_on_altitude());
-    }
-
-    #[test]
-    fn sources_add() {
-        let uniform = WindSource::Uniform {
-            velocity_m_s: DVec3::new(-1.0, 0.0, 0.5),
-        };
-        let profile = WindSource::Profile(WindProfile::venus_zonal());
-        let mut wind = Wind::new(vec![profile, step(3.0, 0.0, 1.0), shear(), uniform]);
-        wind.begin_interval(0.0);
-        let velocity = wind.velocity_m_s(60_000.0).unwrap();
-        assert!((velocity - DVec3::new(72.7 - 1.0 + 3.0, 8.0, 0.5)).length() < 1e-12);
-        let secant = wind.velocity_m_s(58_001.0).unwrap() - wind.velocity_m_s(57_999.0).unwrap();
-        assert!((secant / 2.0 - wind.slope_per_s(58_000.0).unwrap()).length() < 1e-9);
-    }
-
-    #[test]
-    fn still_air_is_still_everywhere() {
-        let wind = Wind::still();
-        assert_eq!(wind.velocity_m_s(1e9), Ok(DVec3::ZERO));
-        assert!(wind.edges_s().is_empty() && !wind.depends_on_altitude());
-    }
-
-    #[test]
-    fn outside_a_profile_is_an_error_that_says_its_bounds() {
-        let wind = Wind::new(vec![WindSource::Profile(WindProfile::venus_zonal())]);
-        assert_eq!(
-            wind.velocity_m_s(70_001.0).unwrap_err().to_string(),
-            "altitude 70001 m is outside the wind profile, which is known from 0 m to 70000 m"
-        );
-        assert!(wind.velocity_m_s(f64::NAN).is_err());
-        assert!(wind.slope_per_s(-1.0).is_err());
-        assert!(Wind::new(vec![shear()]).velocity_m_s(f64::NAN).is_err());
+#[cold]
+fn outside_gust(gust: &GustAxis, altitude_m: f64) -> OutsideWindProfile {
+    let levels = gust.design().levels.as_ref();
+    OutsideWindProfile {
+        source_of_wind: "gust",
+        altitude_m,
+        lowest_m: levels.map_or(f64::NEG_INFINITY, |levels| levels.lowest_m),
+        highest_m: levels.map_or(f64::INFINITY, |levels| levels.highest_m),
     }
 }
+
+#[cfg(test)]
+mod tests;
