@@ -337,3 +337,27 @@ fn closed_loops_of_rigid_links_have_the_modes_of_stiff_tethers() {
         }
     }
 }
+
+/// A winch that stands still on an anchor changes nothing: its segment is a spring like the others.
+#[test]
+fn a_winch_at_rest_changes_no_mode() {
+    let line = |winch: &str| {
+        hung(&format!(
+            "\"p\": (Body: (mass_kg: 10)), \"line\": (Tether: (from: (\"anchor\", Centre), to: (\"p\", Centre), \
+             length_m: 20, nodes: 3, diameter_m: 0.002, density_kg_m3: 1440, axial_stiffness_n: 1e5, \
+             damping_n_s_m: 1), {winch})"
+        ))
+    };
+    for overrides in [
+        &[][..],
+        &["run.formulation=Denoc", "run.elastic_links=true"],
+        &["run.formulation=Denoc"],
+    ] {
+        let [with, without] =
+            ["Winch: (stored_m: 50)", ""].map(|winch| modes_of_text(&line(winch), overrides));
+        for (a, b) in with.modes.iter().zip(&without.modes).take(5) {
+            let (found, expected) = (a.angular_frequency_rad_s, b.angular_frequency_rad_s);
+            assert_relative("with a winch", found, expected, 1e-7);
+        }
+    }
+}

@@ -3,14 +3,16 @@
 
 #![allow(
     clippy::unwrap_used,
+    clippy::expect_used,
     clippy::panic,
     reason = "a test stops at what it does not expect"
 )]
 
 mod flight;
 
+use aerobot::engine::plugin::Simulator;
 use aerobot::engine::recording::frame::{Frame, MemorySink};
-use flight::{assert_below, channel, fly, frame_at, largest_distance_m, position};
+use flight::{assert_below, channel, fly, frame_at, largest_distance_m, load, position};
 use glam::DVec3;
 
 const G: f64 = 8.87;
@@ -364,4 +366,79 @@ fn stiff_lumped_masses_are_reeled_as_rigid_links() {
         differences_m[1] < 0.2 * differences_m[0],
         "{differences_m:?}"
     );
+}
+
+/// A body on four parallel lines, which are redundant by one, each with a winch on the body: paid out together
+/// while it swings, energy less work stays in implicit steps, and the lines have the lengths that are out.
+#[test]
+fn redundant_lines_are_reeled_in_implicit_steps() {
+    let reels: String = (1..=4)
+        .map(|k| format!("(at_s: 2, do: Reel(tether: \"t/{k}\", rate_m_s: 0.5, length_m: 4)), "))
+        .collect();
+    let text = format!(
+        r#"(
+    name: "four", environment: (gravity: Constant({G}), atmosphere: Vacuum),
+    entities: {{
+        "a": (Fixed: (position_m: (0, 0, 1000))),
+        "p": (Body: (mass_kg: 10, inertia: Box(1, 1, 0.5)), Motion: (velocity_m_s: (0.3, 0, 0))),
+        "t": (
+            Tethers: (
+                count: 4, from_radius_m: 0.5, to_radius_m: 0.5, from: ("a", Centre), to: ("p", Top), length_m: 20,
+                nodes: 2, diameter_m: 0.002, density_kg_m3: 1440, axial_stiffness_n: 1e5, damping_n_s_m: 1,
+            ),
+            Winch: (end: To, stored_m: 50),
+        ),
+    }},
+    events: [{reels}],
+    run: (
+        formulation: Denoc, duration_s: 12, output_every_s: 0.5,
+        record: (channels: Only({{"system": ["mechanical_energy_j", "nonconservative_work_j"]}})),
+    ),
+)"#
+    );
+    let results = fly(&text, &[]);
+    let balance = |frame: &Frame| {
+        channel(frame, "system", "mechanical_energy_j")
+            - channel(frame, "system", "nonconservative_work_j")
+    };
+    let drift_j = results
+        .frames
+        .iter()
+        .map(|frame| (balance(frame) - balance(&results.frames[0])).abs());
+    // Of 7 J of swing, and 350 J that the winches take.
+    assert_below("energy less work, J", drift_j.fold(0.0, f64::max), 0.01);
+    let end = results.frames.last().unwrap();
+    let total: f64 = end.segments.iter().map(|row| row.length_m).sum();
+    assert_below("lengths, m", (total - 4.0 * 24.0).abs(), 1e-5);
+}
+
+/// A line between two anchors that is reeled in until it is straight cannot be reeled in further: the run stops and
+/// says so.
+#[test]
+fn a_line_reeled_in_until_it_is_straight_stops_the_run() {
+    let text = format!(
+        r#"(
+    name: "span", environment: (gravity: Constant({G}), atmosphere: Vacuum),
+    entities: {{
+        "left": (Fixed: (position_m: (0, 0, 1000))),
+        "right": (Fixed: (position_m: (15, 0, 1000))),
+        "line": (
+            Tether: (
+                from: ("left", Centre), to: ("right", Centre), length_m: 20, nodes: 4, diameter_m: 0.002,
+                density_kg_m3: 1440, axial_stiffness_n: 1e5, damping_n_s_m: 1,
+            ),
+            Winch: (stored_m: 10),
+        ),
+    }},
+    events: [(at_s: 2, do: Reel(tether: "line", rate_m_s: -0.3, length_m: 5.4))],
+    run: (formulation: Denoc, duration_s: 25, output_every_s: 1),
+)"#
+    );
+    let simulator = Simulator::new();
+    let mut simulation = simulator.build(&load(&simulator, &text, &[])).unwrap();
+    let summary = simulation.run(&mut MemorySink::default(), &mut |_| {});
+    let stop = summary.stopped.expect("it cannot go on");
+    // 5 m are in after 16.7 s.
+    assert!((stop.time_s - 18.0 - 2.0 / 3.0).abs() < 0.05, "{stop}");
+    assert_eq!(stop.entity.as_deref(), Some("line"), "{stop}");
 }

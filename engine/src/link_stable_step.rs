@@ -1,6 +1,7 @@
 //! The stable step of trees of links: the fastest of their transverse waves, of bodies turning about their
 //! joints, of elastic links, and of what drag and dampers bring to rest, at the tensions of the start.
 
+use aerobot_components::winch::Reeled;
 use aerobot_systems::dynamics::state_space::StateSpace;
 use aerobot_systems::integration::stability::largest_stable_step_s;
 use aerobot_systems::linearised_motion::probed_motion::ProbedMotion;
@@ -54,10 +55,20 @@ pub(crate) fn find(
         elastic.1
     };
     let part = state.owner(world, place);
+    // At a winch an elastic link becomes shorter, and the node beyond it lighter, as in the step of springs.
+    let shortest = springs.and_then(|_| shortest_part(world));
+    let step_s = step_s * shortest.map_or(1.0, |part| part * 0.5 * (1.0 + part));
     StableStep {
         step_s,
         segment: part.map_or_else(String::new, |part| name_of(world, part)),
     }
+}
+
+/// The shortest that a segment at a winch becomes, as a part of a nominal one, if there is a winch.
+fn shortest_part(world: &mut World) -> Option<f64> {
+    let mut reeled = world.query::<&Reeled>();
+    let parts = reeled.iter(world).map(|reeled| reeled.shortest_part);
+    parts.min_by(f64::total_cmp)
 }
 
 /// The name of a body or node, or `tether/3` of a segment.

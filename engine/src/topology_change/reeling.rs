@@ -78,6 +78,9 @@ pub(super) fn start(
         warn(world, entity, "was cut at its winch and is not reeled");
         return;
     };
+    if world.get::<Reeling>(line).is_some() {
+        end(world, line, None);
+    }
     let done_s = match length_m {
         Some(length_m) => time_s + length_m / rate_m_s.abs(),
         None => until_s.unwrap_or(time_s),

@@ -118,6 +118,13 @@ impl ClosedDynamics {
         self.loops.add_loads(&mut self.loads);
     }
 
+    /// The tip that was farthest from its place when forces were last solved for: the closure, and how far, m.
+    #[must_use]
+    pub fn widest(&self) -> Option<(usize, f64)> {
+        let gaps = self.open.iter().map(|[gap_m, _]| gap_m.length());
+        gaps.enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b))
+    }
+
     /// Takes from gaps of tips what the lengths of redundant tethers say twice, as far as the last solution tells.
     pub fn drop_redundant(&self, gaps: &mut [DVec3]) {
         self.loops.drop_redundant(gaps);

@@ -153,10 +153,16 @@ impl Loops {
         self.find_matrix(tree);
         self.shared = None;
         if !self.stress.is_absent() {
-            let struts = self.struts(tree, geometry);
-            self.stress.find(&struts);
+            self.stress.find(&self.struts(tree, geometry));
+            for state in &mut self.stress.states {
+                for limb in 0..state.len() {
+                    state[limb] = state[first_of_tether(tree, limb)];
+                }
+            }
             self.chords.clear();
-            self.chords.extend(struts.iter().map(Strut::direction));
+            let limbs = 0..tree.limbs.len();
+            let direction = |limb: usize| geometry.chord(limb).0.normalize_or_zero();
+            self.chords.extend(limbs.map(direction));
         }
         if self.stress.states.is_empty() {
             self.factorise_matrix();
@@ -217,28 +223,35 @@ impl Loops {
         }
     }
 
-    /// The limbs as struts between bodies.
+    /// The limbs as struts between bodies. A tether of several limbs, with a winch, is one strut: that of its first.
     fn struts(&self, tree: &KinematicTree, geometry: &impl LoopGeometry) -> Vec<Strut> {
-        let limbs = tree.limbs.iter().enumerate();
-        limbs
-            .map(|(index, limb)| {
-                let tie = tree
-                    .closures
-                    .iter()
-                    .position(|closure| closure.limb == index);
-                let (chord_m, length_m, is_rigid) = geometry.chord(index);
-                Strut {
-                    chord_m,
-                    length_m,
-                    is_rigid,
-                    near: limb.parent.map(|body| (body, geometry.proximal(index))),
-                    far: match tie {
-                        None => Some((limb.child, geometry.distal(index))),
-                        Some(tie) => self.ties[tie].onto,
-                    },
-                }
-            })
-            .collect()
+        let mut struts: Vec<Strut> = Vec::with_capacity(tree.limbs.len());
+        for (index, limb) in tree.limbs.iter().enumerate() {
+            let mut ties = tree.closures.iter();
+            let tie = ties.position(|closure| closure.limb == index);
+            let (chord_m, length_m, is_rigid) = geometry.chord(index);
+            let own = Strut {
+                chord_m,
+                length_m,
+                is_rigid,
+                near: limb.parent.map(|body| (body, geometry.proximal(index))),
+                far: match tie {
+                    None => Some((limb.child, geometry.distal(index))),
+                    Some(tie) => self.ties[tie].onto,
+                },
+            };
+            let first = first_of_tether(tree, index);
+            if first != index {
+                struts[first].chord_m += chord_m;
+                struts[first].length_m += length_m;
+                struts[first].far = own.far;
+            }
+            struts.push(Strut {
+                is_rigid: is_rigid && first == index,
+                ..own
+            });
+        }
+        struts
     }
 
     /// Takes from gaps of tips what the lengths of redundant tethers say twice, and no multiplier answers for.
@@ -373,6 +386,19 @@ impl Loops {
             }
         }
     }
+}
+
+/// The first limb of the tether that a limb is a part of: limbs of one tether meet at loose nodes.
+fn first_of_tether(tree: &KinematicTree, limb: usize) -> usize {
+    let mut first = limb;
+    while let Some(parent) = tree.limbs[first].parent
+        && tree.knots[parent]
+        && let Some(before) = tree.carried_by[parent]
+        && tree.limbs[before].line == tree.limbs[first].line
+    {
+        first = before;
+    }
+    first
 }
 
 /// Factorises the lower triangle of a symmetric matrix in place: L L'. A row that depends on those before is

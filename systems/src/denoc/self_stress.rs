@@ -8,7 +8,9 @@
 //! ```
 //!
 //! can be added to any solution: of four parallel tethers between two bodies there is one such state, of three
-//! none. They are found once, as eigenvectors of J J' whose eigenvalue is zero, and followed from there.
+//! none. They are found once, as eigenvectors of J J' whose eigenvalue is almost zero, torques on a body counted
+//! by its longest arm, and followed from there. What is taken for redundant and is not quite is held by the
+//! elasticity of the tethers instead of by their lengths, which is no less true.
 
 use glam::DVec3;
 use nalgebra::DMatrix;
@@ -16,7 +18,7 @@ use nalgebra::DMatrix;
 use crate::linearised_motion::body_block::Place;
 
 /// Eigenvalues below this part of the largest are zero.
-const ZERO: f64 = 1e-8;
+const ZERO: f64 = 1e-4;
 /// A limb is a strut where its chord is shorter than it by less than this part: about what tethers stretch.
 const STRAIGHT: f64 = 1e-3;
 
@@ -46,8 +48,26 @@ impl Strut {
         self.is_rigid && self.chord_m.length() > (1.0 - STRAIGHT) * self.length_m
     }
 
-    /// What unit tensions of two struts do to the bodies that both hold: their entry of J J'.
-    fn with(&self, other: &Self) -> f64 {
+    /// The longest arm at a body, m.
+    fn arm_m(&self, body: usize) -> f64 {
+        let ends = [&self.near, &self.far].into_iter().flatten();
+        let own = ends.filter(|(other, _)| *other == body);
+        // The cross-product matrix of r has twice the square of r in its entries.
+        let turn = |place: &Place| {
+            place
+                .turn
+                .to_cols_array()
+                .iter()
+                .map(|v| v * v)
+                .sum::<f64>()
+        };
+        let squares = own.map(|(_, place)| 0.5 * turn(place));
+        squares.fold(0.0, f64::max).sqrt()
+    }
+
+    /// What unit tensions of two struts do to the bodies that both hold: their entry of J J', with the longest
+    /// arm of each body.
+    fn with(&self, other: &Self, arms_m: &[f64]) -> f64 {
         let mut sum = 0.0;
         for (end, sign) in [(&self.near, -1.0), (&self.far, 1.0)] {
             for (other_end, other_sign) in [(&other.near, -1.0), (&other.far, 1.0)] {
@@ -58,7 +78,11 @@ impl Strut {
                         place.load(sign * self.direction()),
                         other_place.load(other_sign * other.direction()),
                     );
-                    sum += a.linear.dot(b.linear) + a.angular.dot(b.angular);
+                    let arm_m = arms_m[*body];
+                    sum += a.linear.dot(b.linear);
+                    if arm_m > 0.0 {
+                        sum += a.angular.dot(b.angular) / (arm_m * arm_m);
+                    }
                 }
             }
         }
@@ -92,7 +116,14 @@ impl SelfStress {
         if taut.is_empty() {
             return;
         }
-        let entry = |i: usize, j: usize| struts[taut[i]].with(&struts[taut[j]]);
+        let ends = struts.iter().flat_map(|strut| [strut.near, strut.far]);
+        let bodies = ends.flatten().map(|(body, _)| body + 1).max().unwrap_or(0);
+        let arm_m = |body: usize| {
+            let arms = struts.iter().map(|strut| strut.arm_m(body));
+            arms.fold(0.0, f64::max)
+        };
+        let arms_m: Vec<f64> = (0..bodies).map(arm_m).collect();
+        let entry = |i: usize, j: usize| struts[taut[i]].with(&struts[taut[j]], &arms_m);
         let decomposed = DMatrix::from_fn(taut.len(), taut.len(), entry).symmetric_eigen();
         let values = &decomposed.eigenvalues;
         let mut order: Vec<usize> = (0..taut.len()).collect();

@@ -247,8 +247,8 @@ impl StateSpace for JointVector {
             return Err(Fault {
                 entity: Some(world.resource::<LinkMechanism>().entities.segments[link]),
                 message:
-                    "a rigid link turns by a right angle in one step: choose a shorter step, or \
-                          `Auto()`"
+                    "a rigid link turns by a right angle in one step: a shorter step (or `Auto()`) follows it, \
+                     unless its line is pulled straight or has nothing to hold it"
                         .to_owned(),
             });
         }

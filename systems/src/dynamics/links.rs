@@ -124,9 +124,30 @@ pub fn solve_links(
     if let Err(massless) = solved {
         faults.report(None, || massless.to_string());
     }
+    if let Some((closure, gap_m)) = mechanism.dynamics.widest() {
+        report_open_loop(mechanism, closure, gap_m, &mut faults);
+    }
     let found = &mut mechanism.accelerations;
     for (body, loose) in mechanism.entities.loose_bodies() {
         found.point_m_s2[loose.point] = found.bodies[body].linear;
+    }
+}
+
+/// A loop that has opened by more than this part of the tether that closes it cannot be closed.
+const WIDEST: f64 = 0.05;
+
+/// Reports a loop that cannot be closed: its tethers are straight, and still too short.
+fn report_open_loop(mechanism: &LinkMechanism, closure: usize, gap_m: f64, faults: &mut FaultSlot) {
+    let tree = &mechanism.tree;
+    let limb = tree.closures[closure].limb;
+    let links = tree.limbs[limb].links.clone();
+    if gap_m > WIDEST * tree.kinds[limb].length_m * links.len() as f64 {
+        faults.report(Some(mechanism.entities.segments[links.start]), || {
+            format!(
+                "a loop of rigid links is open by {gap_m:.3} m here: its tethers are too short to be joined, or a step \
+                 was too long; `run.elastic_links: true` or `LumpedMass` lets tethers stretch"
+            )
+        });
     }
 }
 

@@ -31,7 +31,10 @@ pub fn pay_out(
     for (line, mut state) in &mut lines {
         state.rate_per_s = line.rate_m_s;
         let length_m = state.value;
-        if let Ok(mut spring) = springs.get_mut(line.segment) {
+        // A spring at rest is left alone: who looks for other forces has taken it away.
+        if let Ok(mut spring) = springs.get_mut(line.segment)
+            && spring.rest_length_m != length_m
+        {
             spring.rest_length_m = length_m;
             spring.stiffness_n_m = line.stiffness_n / length_m;
             spring.damping_n_s_m = line.damping_n_s / length_m;
