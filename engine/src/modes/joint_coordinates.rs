@@ -219,7 +219,7 @@ impl JointWorld<'_> {
         let anchors = vec![BodyState::default(); mechanism.tree.closures.len()];
         let offsets = &mechanism.entities.offsets;
         let gaps = gaps(&mechanism.tree, &mechanism.bodies, &anchors, offsets);
-        Ok(gaps.iter().flat_map(|gap| gap[1].to_array()).collect())
+        Ok(gaps.flat_map(|gap| gap[1].to_array()).collect())
     }
 
     /// The linearised motion, and the first-order states that take part in it.

@@ -112,7 +112,9 @@ impl ClosedDynamics {
         if motion.ties.is_empty() {
             self.open.fill([DVec3::ZERO; 2]);
         } else {
-            self.open = gaps(tree, motion.bodies, motion.ties, offsets);
+            self.open.clear();
+            let open = gaps(tree, motion.bodies, motion.ties, offsets);
+            self.open.extend(open);
         }
         self.loops.close(&self.gaps, Told::Forces(&self.open));
         self.loops.add_loads(&mut self.loads);
@@ -178,13 +180,12 @@ impl LoopGeometry for Standing<'_> {
 
 /// Of each closure, how far its tip is from its place (m) and how fast it leaves it (m/s); `anchors` has the
 /// anchors of closures.
-#[must_use]
-pub fn gaps(
-    tree: &KinematicTree,
-    bodies: &[BodyState],
-    anchors: &[BodyState],
-    offsets: &Offsets,
-) -> Vec<[DVec3; 2]> {
+pub fn gaps<'a>(
+    tree: &'a KinematicTree,
+    bodies: &'a [BodyState],
+    anchors: &'a [BodyState],
+    offsets: &'a Offsets,
+) -> impl Iterator<Item = [DVec3; 2]> + 'a {
     let each = tree.closures.iter().zip(&offsets.ties_m).enumerate();
     each.map(|(index, (closure, offset_m))| {
         let onto = closure.onto.map_or(&anchors[index], |body| &bodies[body]);
@@ -194,7 +195,6 @@ pub fn gaps(
             tip.velocity_m_s - place.velocity_m_s,
         ]
     })
-    .collect()
 }
 
 #[cfg(test)]

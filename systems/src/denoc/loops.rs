@@ -16,8 +16,9 @@
 //! the lengths can tell: A is singular, and forces with G' lambda = 0 could be added. Tethers that are
 //! almost rigid are not in doubt: they share the load by their elasticity. Where the tethers of a graph are
 //! straight, [`super::self_stress`] says in advance which combinations are redundant, and `shared_load.rs` puts
-//! the elasticity of the tethers in the place of what their lengths would say twice. What becomes singular on the way is regularised: with H_i the force with which limb i holds what it carries,
-//! and kappa_i its compliance,
+//! the elasticity of the tethers in the place of what their lengths would say twice. What becomes singular on
+//! the way is regularised: with H_i the force with which limb i holds what it carries, and kappa_i its
+//! compliance,
 //!
 //! ```text
 //! (A + eps sum_i R_i' kappa_i R_i) lambda = c - G a_tree - eps sum_i R_i' kappa_i H_i(tree)    R_i = dH_i/dlambda

@@ -51,7 +51,7 @@ impl JointVector {
             &components.ties,
             offsets,
         );
-        let mut gaps: Vec<DVec3> = found.iter().map(|gap| gap[of as usize]).collect();
+        let mut gaps: Vec<DVec3> = found.map(|gap| gap[of as usize]).collect();
         dynamics.drop_redundant(&mut gaps);
         let largest = gaps.iter().map(|gap| gap.length()).fold(0.0, f64::max);
         (gaps, largest)
