@@ -9,7 +9,7 @@ use aerobot_components::winch::{Reeled, ReeledLine};
 use aerobot_systems::denoc::articulated_link::Stretch;
 use aerobot_systems::denoc::kinematics::LimbOffsets;
 use aerobot_systems::denoc::loops::LimbElasticity;
-use aerobot_systems::denoc::tree::{KinematicTree, Limb, LinkKind, Piece};
+use aerobot_systems::denoc::tree::{KinematicTree, LinkKind, Piece};
 use aerobot_systems::dynamics::link_mechanism::{LinkMechanism, LooseNode, TreeEntities};
 use aerobot_systems::dynamics::rigid_body::CarriedMass;
 use aerobot_systems::linearised_motion::topology::End;
@@ -51,18 +51,16 @@ pub(crate) fn build(world: &World, scene: &Scene, found: &WorldTopology) -> Link
         ..TreeEntities::default()
     };
     find_ends(world, found, &tree, &mut entities);
-    let half_link_kg = |limb: &Limb| {
-        let tether = world.get::<Tether>(found.tethers[limb.line]);
-        match reel(world, found, limb.line, limb.segment(0)) {
-            Some(reel) => 0.5 * reel.line.line_kg_m * reel.length_m,
-            None => tether.map_or(0.0, |tether| tether.end_mass_kg(lumping(scene, tether))),
-        }
-    };
-    let half_links_kg: Vec<f64> = tree.limbs.iter().map(half_link_kg).collect();
+    let mut half_links_kg = Vec::with_capacity(tree.limbs.len());
     for (index, limb) in tree.limbs.iter().enumerate() {
-        if let Some(reel) = reel(world, found, limb.line, limb.segment(0)) {
-            entities.reeled.push((index, reel.entity));
-        }
+        let tether = world.get::<Tether>(found.tethers[limb.line]);
+        half_links_kg.push(match reel(world, found, limb.line, limb.segment(0)) {
+            Some(reel) => {
+                entities.reeled.push((index, reel.entity));
+                0.5 * reel.line.line_kg_m * reel.length_m
+            }
+            None => tether.map_or(0.0, |tether| tether.end_mass_kg(lumping(scene, tether))),
+        });
     }
     lend_to_tips(world, &tree, &half_links_kg, &mut entities);
     LinkMechanism::new(tree, entities)
