@@ -2,6 +2,7 @@
 //!
 //! Exit codes: 0 done, 2 refused (nothing written), 3 stopped (what was recorded is kept).
 
+mod campaign;
 mod check;
 mod compare;
 mod comparison_text;
@@ -46,6 +47,9 @@ enum Command {
     Trim(TrimArguments),
     /// Find the modes of small motions about the steady state: frequencies, damping, and who moves how.
     Modes(ModesArguments),
+    /// Run a scene many times with inputs that vary, here or in shards, and fold what comes out.
+    #[command(subcommand)]
+    Campaign(campaign::CampaignCommand),
 }
 
 /// What every command that reads a scene takes.
@@ -234,5 +238,6 @@ pub fn main(plugins: &[&dyn Plugin]) -> ExitCode {
         Command::Reproduce(arguments) => reproduce::reproduce(&simulator, &arguments),
         Command::Trim(arguments) => trim::trim(&simulator, &arguments),
         Command::Modes(arguments) => modes::modes(&simulator, &arguments),
+        Command::Campaign(command) => campaign::campaign(&simulator, &command),
     }
 }
