@@ -249,7 +249,7 @@ mod tests {
     use super::*;
 
     fn of(specification: &str, values: &[(f64, f64)]) -> Option<f64> {
-        let text = specification.replace('(', "(entity: \"a\", channel: \"x_m\", ");
+        let text = specification.replacen('(', "(entity: \"a\", channel: \"x_m\", ", 1);
         let mut latch = Latch::new(&ron::from_str(&text).unwrap());
         values
             .iter()

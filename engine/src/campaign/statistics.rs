@@ -109,7 +109,7 @@ pub fn rank_correlation(pairs: &[(f64, f64)]) -> Option<f64> {
             .map(|(a, b)| (a - middle) * (b - middle))
             .sum()
     };
-    let spread = libm::sqrt(product(&first, &first)) * libm::sqrt(product(&second, &second));
+    let spread = libm::sqrt(product(&first, &first) * product(&second, &second));
     (spread > 0.0).then(|| (product(&first, &second) / spread).clamp(-1.0, 1.0))
 }
 
