@@ -84,12 +84,13 @@ impl Record {
             return None;
         };
         let number = |text: &str| text.parse::<f64>().ok().filter(|value| value.is_finite());
-        let metric = |text: &str| (!text.is_empty()).then(|| number(text));
-        let metrics_read: Vec<Option<Option<f64>>> =
-            split(values, ',', metrics).map(metric).collect();
-        if metrics_read.iter().any(|value| *value == Some(None)) || metrics_read.len() != metrics {
-            return None;
-        }
+        let metric = |text: &str| match text {
+            "" => Some(None),
+            _ => number(text).map(Some),
+        };
+        let metrics_read: Vec<Option<f64>> = split(values, ',', metrics)
+            .map(metric)
+            .collect::<Option<_>>()?;
         let history = |text: &str| -> Option<Vec<f64>> {
             let values = text.split(',').filter(|_| !text.is_empty());
             values.map(number).collect()
@@ -97,12 +98,13 @@ impl Record {
         let envelopes_read: Vec<Vec<f64>> = split(histories, ';', envelopes)
             .map(history)
             .collect::<Option<_>>()?;
-        (envelopes_read.len() == envelopes).then_some(Self {
+        let fits = metrics_read.len() == metrics && envelopes_read.len() == envelopes;
+        fits.then_some(Self {
             index: index.parse().ok()?,
             outcome: Outcome::of_word(outcome)?,
             reason: unescaped(reason),
             simulated_s: number(simulated_s)?,
-            metrics: metrics_read.into_iter().map(Option::flatten).collect(),
+            metrics: metrics_read,
             envelopes: envelopes_read,
         })
     }
