@@ -6,6 +6,9 @@ use serde::Deserialize;
 use super::normal::{normal_below, normal_quantile};
 use super::ordered::RonText;
 
+/// The most levels of a field.
+const MOST_LEVELS: u32 = 1_000_000;
+
 /// How a field of the scene varies. Parameters have the unit of the field unless said otherwise.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(rename = "distribution", deny_unknown_fields)]
@@ -142,6 +145,10 @@ impl Distribution {
                         "two or more",
                     );
                 }
+                if *count > MOST_LEVELS {
+                    let message = format!("{count} levels are more than {MOST_LEVELS}");
+                    report.add("count", message, "");
+                }
                 if from == to {
                     report.add("to", "all levels are the same", "");
                 }
@@ -157,7 +164,11 @@ impl Distribution {
             Self::Levels { from, to, count } => {
                 let last = f64::from(count.saturating_sub(1).max(1));
                 let level = |k: u32| from + (to - from) * (f64::from(k) / last);
-                Some((0..*count).map(|k| format!("{:?}", level(k))).collect())
+                Some(
+                    (0..(*count).min(MOST_LEVELS))
+                        .map(|k| format!("{:?}", level(k)))
+                        .collect(),
+                )
             }
             _ => None,
         }
