@@ -4,6 +4,7 @@
 pub mod balloon_sizing;
 mod building;
 pub mod builtin;
+pub mod campaign;
 pub mod contents;
 mod coordinates;
 pub mod evaluation;

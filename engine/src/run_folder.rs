@@ -241,13 +241,15 @@ pub fn thread_cpu_time() -> Duration {
 }
 
 /// The text of a scene as it is run, and the tables that stand beside it.
-struct SceneAsRun {
-    text: String,
-    tables: Vec<(String, String)>,
+pub(crate) struct SceneAsRun {
+    /// The scene, with the names of its tables as they stand beside it.
+    pub(crate) text: String,
+    /// Names and contents of its tables.
+    pub(crate) tables: Vec<(String, String)>,
 }
 
 /// Every override and the seed are in the text, and tables are named as they stand in the folder.
-fn scene_as_run(scene: &Scene) -> Result<SceneAsRun, SceneError> {
+pub(crate) fn scene_as_run(scene: &Scene) -> Result<SceneAsRun, SceneError> {
     let mut arguments = vec![format!("run.seed={}", scene.run.seed)];
     let mut tables: Vec<(String, String)> = Vec::new();
     for (path, file) in scene.tables.paths(&scene.environment) {

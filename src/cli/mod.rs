@@ -2,6 +2,7 @@
 //!
 //! Exit codes: 0 done, 2 refused (nothing written), 3 stopped (what was recorded is kept).
 
+mod campaign;
 mod check;
 mod compare;
 mod comparison_text;
@@ -49,6 +50,9 @@ enum Command {
     Modes(ModesArguments),
     /// Fit stochastic gusts to measured winds, and draw them.
     Wind(wind::WindArguments),
+    /// Run a scene many times with inputs that vary, here or in shards, and fold what comes out.
+    #[command(subcommand)]
+    Campaign(campaign::CampaignCommand),
 }
 
 /// What every command that reads a scene takes.
@@ -249,5 +253,6 @@ pub fn main(plugins: &[&dyn Plugin]) -> ExitCode {
         Command::Trim(arguments) => trim::trim(&simulator, &arguments),
         Command::Modes(arguments) => modes::modes(&simulator, &arguments),
         Command::Wind(arguments) => wind::wind(&simulator, &arguments),
+        Command::Campaign(command) => campaign::campaign(&simulator, &command),
     }
 }

@@ -172,7 +172,7 @@ fn placeholder_environment() -> Environment {
 }
 
 /// Whether a diagnostic is of a value in which the text itself is at fault, which is said already.
-fn echoes(diagnostic: &Diagnostic, in_text: &[Diagnostic]) -> bool {
+pub(crate) fn echoes(diagnostic: &Diagnostic, in_text: &[Diagnostic]) -> bool {
     let Some(span) = &diagnostic.span else {
         return false;
     };
@@ -193,12 +193,12 @@ fn check_name(name: &str, report: &mut FieldReport) {
     }
 }
 
-fn read_tree(source: &Source) -> Result<Node, Diagnostic> {
+pub(crate) fn read_tree(source: &Source) -> Result<Node, Diagnostic> {
     scan(source.text()).map_err(|error| Diagnostic::new(error.message).at(error.span))
 }
 
 /// What is wrong with the text whatever its fields mean: duplicates and numbers that are not finite.
-fn text_diagnostics(source: &Source, root: &Node) -> Vec<Diagnostic> {
+pub(crate) fn text_diagnostics(source: &Source, root: &Node) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for duplicate in duplicates(root) {
         let line = source
@@ -227,7 +227,7 @@ fn text_diagnostics(source: &Source, root: &Node) -> Vec<Diagnostic> {
 }
 
 /// Gives violations their place in the text: the field itself, or the nearest thing around it.
-pub(super) fn locate(source: &Source, violations: Vec<Violation>) -> Vec<Diagnostic> {
+pub(crate) fn locate(source: &Source, violations: Vec<Violation>) -> Vec<Diagnostic> {
     let root = scan(source.text()).ok();
     violations
         .into_iter()

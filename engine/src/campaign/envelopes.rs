@@ -1,0 +1,182 @@
+//! Envelopes: percentiles over all runs of a quantity at fixed times.
+//!
+//! A run keeps its values at those times, and nothing between them; percentiles are exact, of the values of
+//! all runs, and not of a sketch. What it takes is eight bytes for each run and time.
+
+use aerobot_components::scene_component::FieldReport;
+use serde::Deserialize;
+
+use super::comma_separated::quoted;
+use super::quantity::Quantity;
+use super::statistics::percentile;
+use crate::recording::frame::Frame;
+use crate::recording::number::number_text;
+
+/// Percentiles of an envelope.
+pub const PERCENTILES: [f64; 7] = [0.0, 5.0, 25.0, 50.0, 75.0, 95.0, 100.0];
+
+/// The most times of an envelope.
+const MOST_TIMES: f64 = 1e5;
+
+/// A quantity at fixed times.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename = "envelope", deny_unknown_fields)]
+pub struct EnvelopeSpec {
+    /// Name of the entity or tether.
+    pub entity: String,
+    /// Name of the channel or column.
+    pub channel: String,
+    /// Segment of a tether, from 1; the largest of all segments unless given.
+    #[serde(default)]
+    pub segment: Option<u32>,
+    /// Time between values, s, from 0; what is recorded less often is taken as straight between.
+    pub every_s: f64,
+}
+
+impl EnvelopeSpec {
+    /// What it looks at.
+    #[must_use]
+    pub fn quantity(&self) -> Quantity {
+        Quantity {
+            entity: self.entity.clone(),
+            channel: self.channel.clone(),
+            segment: self.segment,
+        }
+    }
+
+    /// Reports a period that makes no sense in a run of `duration_s`.
+    pub fn check(&self, duration_s: f64, report: &mut FieldReport) {
+        report.positive("every_s", self.every_s);
+        if self.every_s > 0.0 && duration_s / self.every_s > MOST_TIMES {
+            let message = format!(
+                "{duration_s} s in steps of {} s are more than {MOST_TIMES:e} times",
+                self.every_s
+            );
+            report.add("every_s", message, "");
+        }
+    }
+}
+
+/// Takes the values of one run.
+pub struct EnvelopeSampler {
+    quantity: Quantity,
+    every_s: f64,
+    last: Option<(f64, f64)>,
+    values: Vec<f64>,
+}
+
+impl EnvelopeSampler {
+    /// Of an envelope, before the run.
+    #[must_use]
+    pub fn new(specification: &EnvelopeSpec) -> Self {
+        Self {
+            quantity: specification.quantity(),
+            every_s: specification.every_s,
+            last: None,
+            values: Vec::new(),
+        }
+    }
+
+    /// Takes the rows of an instant.
+    pub fn take(&mut self, frame: &Frame) {
+        let Some(value) = self.quantity.read(frame) else {
+            return;
+        };
+        let time_s = frame.time_s;
+        let (before_s, before) = self.last.unwrap_or((time_s, value));
+        // A time that misses a row by round-off is that of the row.
+        while self.values.len() as f64 * self.every_s <= time_s + 1e-9 * self.every_s {
+            let due_s = self.values.len() as f64 * self.every_s;
+            let part = if due_s >= time_s || time_s <= before_s {
+                1.0
+            } else {
+                ((due_s - before_s) / (time_s - before_s)).max(0.0)
+            };
+            let between = if part == 1.0 {
+                value
+            } else {
+                before + part * (value - before)
+            };
+            self.values.push(between + 0.0);
+        }
+        self.last = Some((time_s, value));
+    }
+
+    /// The values, one for each time.
+    #[must_use]
+    pub fn into_values(self) -> Vec<f64> {
+        self.values
+    }
+}
+
+/// Percentiles at each time over the runs that got there, as CSV: `envelopes` are names and periods in s,
+/// `runs` the values of each run for each envelope.
+#[must_use]
+pub fn envelope_table(envelopes: &[(String, f64)], runs: &[&[Vec<f64>]]) -> String {
+    let mut text = "envelope,time_s,runs".to_owned();
+    for percent in PERCENTILES {
+        text.push_str(&format!(",p{percent:02}"));
+    }
+    text.push('\n');
+    for (place, (name, every_s)) in envelopes.iter().enumerate() {
+        let of_runs = || runs.iter().filter_map(|run| run.get(place));
+        let times = of_runs().map(Vec::len).max().unwrap_or(0);
+        for time in 0..times {
+            let mut values: Vec<f64> = of_runs().filter_map(|run| run.get(time).copied()).collect();
+            values.sort_by(f64::total_cmp);
+            let time_s = number_text(time as f64 * every_s);
+            text.push_str(&format!("{},{time_s},{}", quoted(name), values.len()));
+            for percent in PERCENTILES {
+                let value = percentile(&values, percent).map_or_else(String::new, number_text);
+                text.push(',');
+                text.push_str(&value);
+            }
+            text.push('\n');
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::frame::ChannelRow;
+
+    /// Rows every 0.1 s of a straight line, values every 0.25 s: on the line.
+    #[test]
+    fn values_stand_at_their_times() {
+        let specification: EnvelopeSpec =
+            ron::from_str("(entity: \"a\", channel: \"h_m\", every_s: 0.25)").unwrap();
+        let mut sampler = EnvelopeSampler::new(&specification);
+        for k in 0..=10 {
+            let time_s = f64::from(k) * 0.1;
+            let row = ChannelRow {
+                entity: "a".into(),
+                channel: "h_m",
+                value: 3.0 - 2.0 * time_s,
+            };
+            sampler.take(&Frame {
+                time_s,
+                channels: vec![row],
+                ..Frame::default()
+            });
+        }
+        let values = sampler.into_values();
+        assert_eq!(values.len(), 5);
+        for (k, value) in values.iter().enumerate() {
+            assert!((value - (3.0 - 0.5 * k as f64)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn percentiles_are_over_runs_that_got_there() {
+        let runs = [vec![vec![0.0, 1.0]], vec![vec![4.0]]];
+        let runs: Vec<&[Vec<f64>]> = runs.iter().map(Vec::as_slice).collect();
+        let table = envelope_table(&[("h_m".to_owned(), 0.5)], &runs);
+        assert_eq!(
+            table,
+            "envelope,time_s,runs,p00,p05,p25,p50,p75,p95,p100\n\
+             h_m,0,2,0,0.2,1,2,3,3.8,4\nh_m,0.5,1,1,1,1,1,1,1,1\n"
+        );
+    }
+}

@@ -1,0 +1,151 @@
+//! `manifest.json`: what a folder of a campaign is of. With the files that it names in `input/` it is all that a
+//! run needs: shards on other machines, and repetitions years later, read nothing else.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::CampaignError;
+use super::record::fingerprint;
+use crate::recording::summary::VERSION;
+
+/// Name of the manifest in the folder.
+pub const MANIFEST: &str = "manifest.json";
+/// Name of the folder of what the campaign was made of.
+pub const INPUT: &str = "input";
+/// The layout of folders that this program writes and reads.
+pub const LAYOUT: u32 = 1;
+
+/// What a folder is of.
+#[derive(Clone, Debug, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// The layout of the folder.
+    pub layout: u32,
+    /// Version of the program.
+    pub version: String,
+    /// Name of the campaign.
+    pub campaign: String,
+    /// Fingerprint of the version, the campaign, its scene, and all tables: 16 hexadecimal digits.
+    pub fingerprint: String,
+    /// Seed of the campaign.
+    pub seed: u64,
+    /// Number of runs.
+    pub runs: u64,
+    /// Number of shards: shard k has the runs k - 1, k - 1 + shards, and so on.
+    pub shards: u64,
+    /// Names of files in `input/`, in the order of the fingerprint.
+    pub files: Vec<String>,
+    /// Names in `input/` of the tables that the campaign names.
+    pub tables: BTreeMap<String, String>,
+}
+
+/// The fingerprint of input files by names and texts.
+#[must_use]
+pub fn fingerprint_of(files: &[(String, String)]) -> String {
+    let texts = files
+        .iter()
+        .flat_map(|(name, text)| [name.as_bytes(), text.as_bytes()]);
+    format!(
+        "{:016x}",
+        fingerprint([VERSION.as_bytes()].into_iter().chain(texts))
+    )
+}
+
+impl Manifest {
+    /// Reads that of a folder; `None` if there is no such file.
+    ///
+    /// # Errors
+    /// The file is not a manifest, or one of another layout or version.
+    pub fn read(folder: &Path) -> Result<Option<Self>, CampaignError> {
+        let path = folder.join(MANIFEST);
+        let text = match fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(CampaignError::unreadable(&path, &error)),
+        };
+        let manifest: Self = serde_json::from_str(&text).map_err(|error| {
+            let message = format!(
+                "{}:{}:{}: this is not the manifest of a campaign: {error}",
+                path.display(),
+                error.line(),
+                error.column()
+            );
+            CampaignError::refused(message, "name another folder")
+        })?;
+        if (manifest.layout, manifest.version.as_str()) != (LAYOUT, VERSION) {
+            let message = format!(
+                "the campaign in `{}` is of version {}, this is {VERSION}",
+                folder.display(),
+                manifest.version
+            );
+            let help = "the numbers of versions differ: finish it with the version that began it";
+            return Err(CampaignError::refused(message, help));
+        }
+        if manifest.shards == 0 || manifest.runs == 0 {
+            let message = format!("{}: `runs` and `shards` must be above zero", path.display());
+            return Err(CampaignError::refused(message, ""));
+        }
+        Ok(Some(manifest))
+    }
+
+    /// Reads that of a folder of a campaign.
+    ///
+    /// # Errors
+    /// As [`Manifest::read`], or that there is none.
+    pub fn open(folder: &Path) -> Result<Self, CampaignError> {
+        Self::read(folder)?.ok_or_else(|| {
+            let message = format!(
+                "`{}` is not the folder of a campaign: it has no `{MANIFEST}`",
+                folder.display()
+            );
+            let help = "`aerobot campaign plan FILE --out DIR` makes one";
+            CampaignError::refused(message, help)
+        })
+    }
+}
+
+/// Makes the folder of a campaign, whole or not at all: it is filled beside its place and renamed.
+///
+/// # Errors
+/// What the file system refused; nothing is left then.
+pub fn create_folder(
+    folder: &Path,
+    manifest: &Manifest,
+    files: &[(String, String)],
+) -> Result<(), CampaignError> {
+    let refused = |path: &Path, error: &io::Error| {
+        CampaignError::refused(
+            format_args!("cannot write `{}`: {error}", path.display()),
+            "",
+        )
+    };
+    let Some(name) = folder.file_name() else {
+        let error = io::ErrorKind::InvalidFilename.into();
+        return Err(refused(folder, &error));
+    };
+    let new = folder.with_file_name(format!(".{}.new", name.to_string_lossy()));
+    let filled = fill(&new, manifest, files).and_then(|()| fs::rename(&new, folder));
+    filled.map_err(|error| {
+        let _ = fs::remove_dir_all(&new);
+        refused(folder, &error)
+    })
+}
+
+fn fill(folder: &Path, manifest: &Manifest, files: &[(String, String)]) -> io::Result<()> {
+    // Left over from a program that was ended here.
+    if folder.exists() {
+        fs::remove_dir_all(folder)?;
+    }
+    fs::create_dir_all(folder.join(INPUT))?;
+    fs::create_dir(folder.join(super::shards::SHARDS))?;
+    for (name, text) in files {
+        fs::write(folder.join(INPUT).join(name), text)?;
+    }
+    let mut text = serde_json::to_string_pretty(manifest)?;
+    text.push('\n');
+    fs::write(folder.join(MANIFEST), text)
+}

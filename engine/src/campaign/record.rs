@@ -1,0 +1,188 @@
+//! What is kept of a run: a line of text, with a sum over it that tells a torn line.
+
+use crate::recording::number::number_text;
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// At its end.
+    Done,
+    /// Before its end.
+    Stopped,
+    /// It was not run: the scene makes no sense with these inputs.
+    Refused,
+}
+
+impl Outcome {
+    /// The word in tables.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Stopped => "stopped",
+            Self::Refused => "refused",
+        }
+    }
+
+    fn of_word(word: &str) -> Option<Self> {
+        let all = [Self::Done, Self::Stopped, Self::Refused];
+        all.into_iter().find(|outcome| outcome.word() == word)
+    }
+}
+
+/// What is kept of a run. Numbers are finite.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// Index of the run, from 0.
+    pub index: u64,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Why it did not get to its end; empty if it did.
+    pub reason: String,
+    /// Simulated time, s.
+    pub simulated_s: f64,
+    /// The metrics in the order of the campaign; nothing in a run that did not get to its end.
+    pub metrics: Vec<Option<f64>>,
+    /// Values of each envelope at its times; nothing in a run that did not get to its end.
+    pub envelopes: Vec<Vec<f64>>,
+}
+
+impl Record {
+    /// As a line with its end.
+    #[must_use]
+    pub fn to_line(&self) -> String {
+        let metrics = self
+            .metrics
+            .iter()
+            .map(|value| value.map_or_else(String::new, number_text));
+        let values =
+            |values: &Vec<f64>| joined(values.iter().map(|value| number_text(*value)), ",");
+        let line = [
+            self.index.to_string(),
+            self.outcome.word().to_owned(),
+            number_text(self.simulated_s),
+            self.reason
+                .replace('\\', "\\\\")
+                .replace('\t', "\\t")
+                .replace('\n', "\\n"),
+            joined(metrics, ","),
+            joined(self.envelopes.iter().map(values), ";"),
+        ]
+        .join("\t");
+        format!("{line}\t{:016x}\n", fingerprint([line.as_bytes()]))
+    }
+
+    /// Of a line without its end, of a campaign with so many metrics and envelopes; `None` if it is not whole.
+    #[must_use]
+    pub fn of_line(line: &str, metrics: usize, envelopes: usize) -> Option<Self> {
+        let (content, sum) = line.rsplit_once('\t')?;
+        if sum != format!("{:016x}", fingerprint([content.as_bytes()])) {
+            return None;
+        }
+        let parts: Vec<&str> = content.split('\t').collect();
+        let [index, outcome, simulated_s, reason, values, histories] = parts.as_slice() else {
+            return None;
+        };
+        let number = |text: &str| text.parse::<f64>().ok().filter(|value| value.is_finite());
+        let metric = |text: &str| match text {
+            "" => Some(None),
+            _ => number(text).map(Some),
+        };
+        let metrics_read: Vec<Option<f64>> = split(values, ',', metrics)
+            .map(metric)
+            .collect::<Option<_>>()?;
+        let history = |text: &str| -> Option<Vec<f64>> {
+            let values = text.split(',').filter(|_| !text.is_empty());
+            values.map(number).collect()
+        };
+        let envelopes_read: Vec<Vec<f64>> = split(histories, ';', envelopes)
+            .map(history)
+            .collect::<Option<_>>()?;
+        let fits = metrics_read.len() == metrics && envelopes_read.len() == envelopes;
+        fits.then_some(Self {
+            index: index.parse().ok()?,
+            outcome: Outcome::of_word(outcome)?,
+            reason: unescaped(reason),
+            simulated_s: number(simulated_s)?,
+            metrics: metrics_read,
+            envelopes: envelopes_read,
+        })
+    }
+}
+
+fn joined(parts: impl Iterator<Item = String>, between: &str) -> String {
+    parts.collect::<Vec<_>>().join(between)
+}
+
+/// The parts of a text; none if there are to be none.
+fn split(text: &str, between: char, count: usize) -> impl Iterator<Item = &str> {
+    text.split(between).filter(move |_| count > 0)
+}
+
+fn unescaped(text: &str) -> String {
+    let mut found = String::new();
+    let mut characters = text.chars();
+    while let Some(character) = characters.next() {
+        match character {
+            '\\' => match characters.next() {
+                Some('t') => found.push('\t'),
+                Some('n') => found.push('\n'),
+                Some(other) => found.push(other),
+                None => {}
+            },
+            _ => found.push(character),
+        }
+    }
+    found
+}
+
+/// FNV-1a of 64 bits over parts and their lengths: tells files and lines apart that differ by accident, and is
+/// no protection against intent.
+#[must_use]
+pub fn fingerprint<'a>(parts: impl IntoIterator<Item = &'a [u8]>) -> u64 {
+    let step = |sum: u64, byte: &u8| (sum ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+    let mut sum = 0xcbf2_9ce4_8422_2325;
+    for (number, part) in parts.into_iter().enumerate() {
+        if number > 0 {
+            sum = (part.len() as u64).to_le_bytes().iter().fold(sum, step);
+        }
+        sum = part.iter().fold(sum, step);
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_read_back_and_torn_ones_do_not() {
+        let record = Record {
+            index: 17,
+            outcome: Outcome::Stopped,
+            reason: "a\tb\\n\nc".to_owned(),
+            simulated_s: 0.1 + 0.2,
+            metrics: vec![Some(-1e-300), None],
+            envelopes: vec![vec![1.0, 1.0 / 3.0], vec![]],
+        };
+        let line = record.to_line();
+        let whole = line.trim_end_matches('\n');
+        assert_eq!(Record::of_line(whole, 2, 2), Some(record));
+        for end in 0..whole.len() {
+            assert_eq!(Record::of_line(&whole[..end], 2, 2), None);
+        }
+        assert_eq!(Record::of_line(whole, 3, 2), None);
+    }
+
+    /// Test vectors of the algorithm's authors.
+    #[test]
+    fn fingerprints_are_fnv_1a() {
+        assert_eq!(fingerprint([&b""[..]]), 0xcbf2_9ce4_8422_2325);
+        assert_eq!(fingerprint([&b"a"[..]]), 0xaf63_dc4c_8601_ec8c);
+        assert_eq!(fingerprint([&b"foobar"[..]]), 0x8594_4171_f739_67e8);
+        assert_ne!(
+            fingerprint([&b"ab"[..], b"c"]),
+            fingerprint([&b"a"[..], b"bc"])
+        );
+    }
+}

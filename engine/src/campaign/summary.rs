@@ -1,0 +1,324 @@
+//! `summary.json`: what the runs of a campaign have in common.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use super::definition::Campaign;
+use super::record::Outcome;
+use super::running::Records;
+use super::statistics::{bootstrap, mean_and_deviation, percentile, rank_correlation};
+
+/// Percentiles of every metric.
+pub const PERCENTS: [f64; 7] = [1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 99.0];
+
+/// The summary of a campaign.
+#[derive(Clone, Debug, Serialize)]
+pub struct CampaignSummary {
+    /// Version of the program.
+    pub version: String,
+    /// Name of the campaign.
+    pub campaign: String,
+    /// Fingerprint of what it was made of.
+    pub fingerprint: String,
+    /// Seed of the campaign.
+    pub seed: u64,
+    /// Runs that were planned.
+    pub runs_planned: u64,
+    /// Runs that are counted here: the first so many.
+    pub runs: u64,
+    /// Those of them that got to their end; all numbers below are of these.
+    pub runs_done: u64,
+    /// Why others did not, the most frequent reason first.
+    pub failures: Vec<Failure>,
+    /// The metrics, in the order of the campaign.
+    pub metrics: Vec<MetricSummary>,
+    /// Spearman's rank correlation of each field that varies with each metric, where both are numbers.
+    pub rank_correlations: Vec<RankCorrelation>,
+    /// How the numbers are meant.
+    pub notes: Vec<String>,
+}
+
+/// Runs that failed for one reason.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Failure {
+    /// The reason, with `#` for numbers.
+    pub reason: String,
+    /// How many runs.
+    pub runs: u64,
+    /// Index of the first of them.
+    pub first_run: u64,
+}
+
+/// A metric over all runs that have it, in its unit.
+#[derive(Clone, Debug, Serialize)]
+pub struct MetricSummary {
+    /// Its name.
+    pub name: String,
+    /// Runs that have it.
+    pub runs: u64,
+    /// Mean.
+    pub mean: Option<f64>,
+    /// 95 % interval of the mean by the bootstrap.
+    pub mean_interval_95: Option<[f64; 2]>,
+    /// Standard deviation over n - 1.
+    pub standard_deviation: Option<f64>,
+    /// Smallest value, and index of its run.
+    pub smallest: Option<(f64, u64)>,
+    /// Largest value, and index of its run.
+    pub largest: Option<(f64, u64)>,
+    /// Percentiles.
+    pub percentiles: Vec<Percentile>,
+    /// Resamples of the bootstrap.
+    pub bootstrap_resamples: Option<u32>,
+}
+
+/// A percentile, in the metric's unit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Percentile {
+    /// Which, %.
+    pub percent: f64,
+    /// Its value.
+    pub value: f64,
+    /// 95 % interval by the bootstrap.
+    pub interval_95: Option<[f64; 2]>,
+}
+
+/// Spearman's rank correlation of a field and a metric.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RankCorrelation {
+    /// Path of the field.
+    pub field: String,
+    /// Name of the metric.
+    pub metric: String,
+    /// The correlation; nothing where one of the two does not vary.
+    pub spearman: Option<f64>,
+    /// Runs that have both.
+    pub runs: u64,
+}
+
+/// Folds the records, in the order of their indices.
+#[must_use]
+pub fn summarise(campaign: &Campaign, records: &Records) -> CampaignSummary {
+    let names = campaign
+        .specification
+        .metrics
+        .0
+        .iter()
+        .map(|(name, _)| name);
+    let metrics = names.enumerate();
+    let metrics = metrics.map(|(place, name)| of_metric(campaign, records, place, name));
+    let done = records
+        .values()
+        .filter(|record| record.outcome == Outcome::Done);
+    CampaignSummary {
+        version: campaign.manifest.version.clone(),
+        campaign: campaign.specification.name.clone(),
+        fingerprint: campaign.manifest.fingerprint.clone(),
+        seed: campaign.specification.seed,
+        runs_planned: campaign.plan.runs,
+        runs: records.len() as u64,
+        runs_done: done.count() as u64,
+        failures: failures(records),
+        metrics: metrics.collect(),
+        rank_correlations: rank_correlations(campaign, records),
+        notes: notes(campaign, records),
+    }
+}
+
+fn notes(campaign: &Campaign, records: &Records) -> Vec<String> {
+    let mut notes = vec![
+        "intervals are of the percentile bootstrap and take runs as independent: of a Latin hypercube or \
+         Sobol's sequence they are too wide as a rule, of a grid or a list they mean little"
+            .to_owned(),
+        "Sobol indices are left out: no plan here is laid out for their estimators".to_owned(),
+    ];
+    if (records.len() as u64) < campaign.plan.runs {
+        notes.push(
+            "the campaign ended at a width of an interval that was looked at several times, which makes the \
+             interval cover somewhat less than it says"
+                .to_owned(),
+        );
+    }
+    notes
+}
+
+fn failures(records: &Records) -> Vec<Failure> {
+    let mut found: BTreeMap<String, (u64, u64)> = BTreeMap::new();
+    for record in records
+        .values()
+        .filter(|record| record.outcome != Outcome::Done)
+    {
+        let reason = format!(
+            "{}: {}",
+            record.outcome.word(),
+            without_numbers(&record.reason)
+        );
+        found.entry(reason).or_insert((0, record.index)).0 += 1;
+    }
+    let failure = |(reason, (runs, first_run))| Failure {
+        reason,
+        runs,
+        first_run,
+    };
+    let mut found: Vec<Failure> = found.into_iter().map(failure).collect();
+    found.sort_by_key(|failure| std::cmp::Reverse(failure.runs));
+    found
+}
+
+/// A text with `#` in the place of each number.
+fn without_numbers(text: &str) -> String {
+    let mut found = String::new();
+    let mut in_number = false;
+    let mut before = ' ';
+    for character in text.chars() {
+        let starts = character.is_ascii_digit() && !before.is_alphanumeric() && before != '_';
+        let goes_on = in_number && (character.is_ascii_digit() || ".e-".contains(character));
+        if starts && !in_number {
+            found.push('#');
+        }
+        in_number = starts || goes_on;
+        if !in_number {
+            found.push(character);
+        }
+        before = character;
+    }
+    found
+}
+
+fn of_metric(campaign: &Campaign, records: &Records, place: usize, name: &str) -> MetricSummary {
+    let value_of = |(index, record): (&u64, &super::record::Record)| {
+        Some((record.metrics.get(place).copied()??, *index))
+    };
+    let mut values: Vec<(f64, u64)> = records.iter().filter_map(value_of).collect();
+    values.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let sorted: Vec<f64> = values.iter().map(|(value, _)| *value).collect();
+    let moments = mean_and_deviation(&sorted);
+    let seed = campaign.specification.seed;
+    let intervals = bootstrap(&sorted, &PERCENTS, seed, place as u64);
+    let percentiles = PERCENTS.iter().enumerate().filter_map(|(at, percent)| {
+        Some(Percentile {
+            percent: *percent,
+            value: percentile(&sorted, *percent)?,
+            interval_95: intervals
+                .as_ref()
+                .and_then(|found| found.percentiles.get(at).copied()),
+        })
+    });
+    MetricSummary {
+        name: name.to_owned(),
+        runs: sorted.len() as u64,
+        mean: moments
+            .map(|(mean, _)| mean)
+            .or_else(|| sorted.first().copied()),
+        mean_interval_95: intervals.as_ref().map(|found| found.mean),
+        standard_deviation: moments.map(|(_, deviation)| deviation),
+        smallest: values.first().copied(),
+        largest: values.last().copied(),
+        percentiles: percentiles.collect(),
+        bootstrap_resamples: intervals.as_ref().map(|found| found.resamples),
+    }
+}
+
+fn rank_correlations(campaign: &Campaign, records: &Records) -> Vec<RankCorrelation> {
+    let metrics = &campaign.specification.metrics.0;
+    let fields = campaign.plan.field_names();
+    let mut pairs = vec![Vec::new(); fields.len() * metrics.len()];
+    for (index, record) in records {
+        let inputs = campaign.plan.inputs(*index).fields;
+        for (field, (_, text)) in inputs.iter().enumerate() {
+            let Some(input) = text.parse::<f64>().ok().filter(|value| value.is_finite()) else {
+                continue;
+            };
+            for (metric, value) in record.metrics.iter().enumerate() {
+                let pairs = pairs.get_mut(field * metrics.len() + metric);
+                if let (Some(pairs), Some(value)) = (pairs, value) {
+                    pairs.push((input, *value));
+                }
+            }
+        }
+    }
+    let both = fields
+        .iter()
+        .flat_map(|field| metrics.iter().map(move |metric| (field, metric)));
+    let both = both.zip(pairs).filter(|(_, pairs)| !pairs.is_empty());
+    both.map(|((field, (metric, _)), pairs)| RankCorrelation {
+        field: (*field).to_owned(),
+        metric: metric.clone(),
+        spearman: rank_correlation(&pairs),
+        runs: pairs.len() as u64,
+    })
+    .collect()
+}
+
+impl CampaignSummary {
+    /// A few lines for the terminal.
+    #[must_use]
+    pub fn describe(&self) -> String {
+        let mut text = format!(
+            "{}: {} of {} runs, {} done\n",
+            self.campaign, self.runs, self.runs_planned, self.runs_done
+        );
+        for failure in self.failures.iter().take(10) {
+            let Failure {
+                reason,
+                runs,
+                first_run,
+            } = failure;
+            let _ = writeln!(text, "  {runs} failed, run {first_run} first: {reason}");
+        }
+        let width = self
+            .metrics
+            .iter()
+            .map(|metric| metric.name.len())
+            .max()
+            .unwrap_or(0);
+        let shown = |value: f64| format!("{value:.4e}");
+        for metric in &self.metrics {
+            let _ = write!(text, "  {:width$}", metric.name);
+            let (Some(mean), Some((least, _)), Some((most, _))) =
+                (metric.mean, metric.smallest, metric.largest)
+            else {
+                let _ = writeln!(text, "  no run has it");
+                continue;
+            };
+            let _ = write!(text, "  mean {}", shown(mean));
+            if let Some([low, high]) = metric.mean_interval_95 {
+                let _ = write!(text, " ({} to {})", shown(low), shown(high));
+            }
+            for percentile in &metric.percentiles {
+                if [5.0, 50.0, 95.0].contains(&percentile.percent) {
+                    let _ = write!(
+                        text,
+                        ", {} % {}",
+                        percentile.percent,
+                        shown(percentile.value)
+                    );
+                }
+            }
+            let _ = writeln!(text, ", from {} to {}", shown(least), shown(most));
+        }
+        for found in &self.rank_correlations {
+            if let Some(spearman) = found.spearman {
+                let RankCorrelation { field, metric, .. } = found;
+                let _ = writeln!(
+                    text,
+                    "  rank correlation {spearman:+.3} of {field} and {metric}"
+                );
+            }
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reasons_differ_in_words_and_not_in_numbers() {
+        let reason = "`tether/3`: fell below 12.5 m at 3e-5 s";
+        assert_eq!(without_numbers(reason), "`tether/#`: fell below # m at # s");
+    }
+}
