@@ -13,6 +13,7 @@ use crate::scene::groups::Expansion;
 use crate::scene::registry::{ComponentEntry, ComponentRegistry};
 use crate::scene::{Scene, SetupError};
 use crate::schedule::{Phase, Registration};
+use crate::sequence::Orders;
 
 /// A family of components and systems that joins a simulator.
 pub trait Plugin {
@@ -33,6 +34,7 @@ pub struct Simulator {
     pub(crate) setups: Vec<Box<Setup>>,
     pub(crate) systems: Vec<Registration>,
     pub(crate) shuffle_seed: Option<u64>,
+    pub(crate) orders: Orders,
 }
 
 impl Default for Simulator {
@@ -52,6 +54,7 @@ impl Simulator {
             setups: Vec::new(),
             systems: Vec::new(),
             shuffle_seed: None,
+            orders: Orders::default(),
         };
         builtin::register(&mut simulator);
         simulator

@@ -27,7 +27,7 @@ use bevy_ecs::world::World;
 
 use crate::plugin::Simulator;
 use crate::scene::Scene;
-use crate::sequence::Sequence;
+use crate::sequence::{OrderOf, Sequence};
 
 /// A place in the order of a step.
 #[derive(Clone, Copy, Debug, Hash, PartialEq, Eq, SystemSet)]
@@ -109,17 +109,35 @@ pub(crate) fn build(
     (scene, formulation): (&Scene, Formulation),
     world: &mut World,
 ) -> Result<Sequence, String> {
-    let assemble = || assemble(label.clone(), phases, simulator, (scene, formulation));
-    Sequence::new(assemble, world)
+    let registrations = needed(phases, simulator, (scene, formulation));
+    let assemble = || assemble(label.clone(), simulator, &registrations);
+    let of = OrderOf {
+        registrations: registrations.clone(),
+        shuffle_seed: simulator.shuffle_seed,
+    };
+    simulator.orders.sequence(of, assemble, world)
 }
 
-/// The schedule, not yet ordered.
-fn assemble(
-    label: impl ScheduleLabel,
+/// Numbers of the registrations of `phases` that a scene needs, in their order.
+fn needed(
     phases: &[Phase],
     simulator: &Simulator,
     (scene, formulation): (&Scene, Formulation),
-) -> Schedule {
+) -> Vec<usize> {
+    let of_phase = |phase: &Phase| {
+        let phase = *phase;
+        let registrations = simulator.systems.iter().enumerate();
+        registrations.filter_map(move |(index, registration)| {
+            let is_needed =
+                registration.phase == phase && (registration.needed)(scene, formulation);
+            is_needed.then_some(index)
+        })
+    };
+    phases.iter().flat_map(of_phase).collect()
+}
+
+/// The schedule, not yet ordered.
+fn assemble(label: impl ScheduleLabel, simulator: &Simulator, registrations: &[usize]) -> Schedule {
     let mut schedule = Schedule::new(label);
     schedule.set_build_settings(ScheduleBuildSettings {
         ambiguity_detection: LogLevel::Error,
@@ -127,19 +145,17 @@ fn assemble(
         ..ScheduleBuildSettings::default()
     });
     let mut before: Option<Registered> = None;
-    for phase in phases {
-        for (index, registration) in simulator.systems.iter().enumerate() {
-            if registration.phase != *phase || !(registration.needed)(scene, formulation) {
-                continue;
-            }
-            let set = Registered(index);
-            schedule.configure_sets(set.in_set(*phase));
-            if let Some(before) = before {
-                schedule.configure_sets(set.after(before));
-            }
-            (registration.add)(&mut schedule, set);
-            before = Some(set);
+    for index in registrations {
+        let Some(registration) = simulator.systems.get(*index) else {
+            continue;
+        };
+        let set = Registered(*index);
+        schedule.configure_sets(set.in_set(registration.phase));
+        if let Some(before) = before {
+            schedule.configure_sets(set.after(before));
         }
+        (registration.add)(&mut schedule, set);
+        before = Some(set);
     }
     schedule
 }

@@ -5,8 +5,12 @@
 //! A [`Schedule`] still orders the systems and checks them for ambiguities; what it has found is then
 //! run without it, unless it holds what only the executor knows how to run.
 
+use std::any::TypeId;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
 use bevy_ecs::error::ErrorContext;
-use bevy_ecs::schedule::{ConditionWithAccess, Schedule, SystemWithAccess};
+use bevy_ecs::schedule::{ConditionWithAccess, Schedule, SystemKey, SystemWithAccess};
 use bevy_ecs::system::{IntoSystem, RunSystemError, System};
 use bevy_ecs::world::World;
 
@@ -26,6 +30,49 @@ struct Member {
     conditions: Vec<ConditionWithAccess>,
 }
 
+/// Systems in an order that has been checked, each by its key in a schedule of the same registrations and
+/// its type.
+type Order = Arc<[(SystemKey, TypeId)]>;
+
+/// The orders that have been found, so that the many worlds of a campaign are not ordered one by one.
+#[derive(Default)]
+pub(crate) struct Orders(Mutex<BTreeMap<OrderOf, Order>>);
+
+/// What an order follows from: the registrations, by their numbers, and the seed of a shuffle.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct OrderOf {
+    pub(crate) registrations: Vec<usize>,
+    pub(crate) shuffle_seed: Option<u64>,
+}
+
+impl Orders {
+    /// [`Sequence::new`], without ordering again what has been ordered before.
+    ///
+    /// # Errors
+    /// The text of an ambiguity or of a cycle.
+    pub(crate) fn sequence(
+        &self,
+        of: OrderOf,
+        assemble: impl Fn() -> Schedule,
+        world: &mut World,
+    ) -> Result<Sequence, String> {
+        let known = self.known().get(&of).cloned();
+        let members = known.and_then(|order| members(&order, assemble(), world));
+        if let Some(members) = members {
+            return Ok(Sequence(Runner::Direct(members)));
+        }
+        let (sequence, order) = Sequence::ordered(assemble, world)?;
+        if let Some(order) = order {
+            self.known().insert(of, order);
+        }
+        Ok(sequence)
+    }
+
+    fn known(&self) -> std::sync::MutexGuard<'_, BTreeMap<OrderOf, Order>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
 impl Sequence {
     /// The systems of the schedule that `assemble` makes, in an order that has been checked.
     ///
@@ -33,15 +80,28 @@ impl Sequence {
     ///
     /// # Errors
     /// The text of an ambiguity or of a cycle.
-    pub(crate) fn new(assemble: impl Fn() -> Schedule, world: &mut World) -> Result<Self, String> {
+    #[cfg(test)]
+    fn new(assemble: impl Fn() -> Schedule, world: &mut World) -> Result<Self, String> {
+        Ok(Self::ordered(assemble, world)?.0)
+    }
+
+    /// The same, with the order where it can be used again.
+    fn ordered(
+        assemble: impl Fn() -> Schedule,
+        world: &mut World,
+    ) -> Result<(Self, Option<Order>), String> {
         let mut ordered = assemble();
         if let Err(error) = ordered.initialize(world) {
             return Err(error.to_string(ordered.graph(), world));
         }
-        Ok(Self(match members(&ordered, assemble(), world) {
-            Some(members) => Runner::Direct(members),
-            None => Runner::Executor(Box::new(ordered)),
-        }))
+        let order = order(&ordered);
+        let members = order
+            .as_ref()
+            .and_then(|order| members(order, assemble(), world));
+        Ok(match members {
+            Some(members) => (Self(Runner::Direct(members)), order),
+            None => (Self(Runner::Executor(Box::new(ordered))), None),
+        })
     }
 
     /// Runs all of them.
@@ -109,28 +169,40 @@ fn fail<S: System>(system: &S, error: RunSystemError, world: &World) {
     }
 }
 
-/// The systems of `fresh` in the order of `ordered`, which was made of the same registrations; `None` if
-/// they need the executor.
-fn members(ordered: &Schedule, mut fresh: Schedule, world: &mut World) -> Option<Vec<Member>> {
+/// The order of a schedule; `None` if its systems need the executor.
+fn order(ordered: &Schedule) -> Option<Order> {
+    let mut order = Vec::new();
+    for (key, system) in ordered.systems().ok()? {
+        if system.has_deferred() {
+            return None;
+        }
+        order.push((key, system.system_type()));
+    }
+    Some(order.into())
+}
+
+/// The systems of `fresh` in an order, which was found of the same registrations; `None` if they need the
+/// executor.
+fn members(order: &Order, mut fresh: Schedule, world: &mut World) -> Option<Vec<Member>> {
     let graph = fresh.graph_mut();
     let mut sets = graph.system_sets.iter();
     if sets.any(|(_, _, conditions)| !conditions.is_empty()) {
         return None;
     }
     // The schedule puts systems of its own between those that have something to apply.
-    if ordered.systems_len() != graph.systems.len() {
+    if order.len() != graph.systems.len() {
         return None;
     }
-    let mut members = Vec::new();
-    for (key, known) in ordered.systems().ok()? {
-        let place = graph.systems.get_mut(key)?;
-        if known.has_deferred() || place.system_type() != known.system_type() {
+    let mut members = Vec::with_capacity(order.len());
+    for (key, system_type) in order.iter() {
+        let place = graph.systems.get_mut(*key)?;
+        if place.system_type() != *system_type {
             return None;
         }
         let nothing = SystemWithAccess::new(Box::new(IntoSystem::into_system(|| {})));
         let mut system = std::mem::replace(place, nothing);
         system.initialize(world);
-        let mut conditions = std::mem::take(graph.systems.get_conditions_mut(key)?);
+        let mut conditions = std::mem::take(graph.systems.get_conditions_mut(*key)?);
         for condition in &mut conditions {
             condition.initialize(world);
         }

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use super::CampaignError;
 use super::manifest::{INPUT, Manifest, fingerprint_of};
@@ -9,6 +10,7 @@ use super::plan::Plan;
 use super::plan_tables::read_tables;
 use super::preparation::{CAMPAIGN_FILE, SCENE_FILE};
 use super::specification::{CampaignSpec, Faults, read_specification};
+use crate::scene::{Scene, SceneError};
 
 /// A campaign, ready to run any of its runs. It can be shared by threads.
 pub struct Campaign {
@@ -22,6 +24,8 @@ pub struct Campaign {
     pub plan: Plan,
     /// The scene with what all runs have in common.
     pub(super) scene_text: String,
+    /// The scene itself, if nothing but the seed varies: then it is read once.
+    pub(super) common_scene: OnceLock<Result<Scene, SceneError>>,
 }
 
 impl Campaign {
@@ -66,6 +70,7 @@ impl Campaign {
                 specification,
                 plan,
                 scene_text,
+                common_scene: OnceLock::new(),
             }),
             _ => {
                 let message = format!(

@@ -130,9 +130,19 @@ impl Campaign {
     /// # Errors
     /// What the scene refuses of its inputs, rendered.
     pub fn scene(&self, simulator: &Simulator, index: u64) -> Result<Scene, SceneError> {
-        let overrides = self.plan.inputs(index).overrides();
+        let inputs = self.plan.inputs(index);
+        if let (true, Ok(seed)) = (inputs.fields.is_empty(), inputs.seed.parse()) {
+            let common = self.common_scene.get_or_init(|| self.load(simulator, &[]));
+            let mut scene = common.clone()?;
+            scene.run.seed = seed;
+            return Ok(scene);
+        }
+        self.load(simulator, &inputs.overrides())
+    }
+
+    fn load(&self, simulator: &Simulator, overrides: &[String]) -> Result<Scene, SceneError> {
         let (text, folder) = (self.scene_text.clone(), self.input_folder());
-        simulator.load_text(SCENE_FILE, text, &folder, &overrides)
+        simulator.load_text(SCENE_FILE, text, &folder, overrides)
     }
 
     fn not_run(&self, index: u64, outcome: Outcome, reason: String) -> Record {

@@ -147,10 +147,11 @@ fn solve_springs(
         return Ok(());
     }
     let mut before_rad = f64::INFINITY;
-    solve_from(world, evaluation, &sites, &pattern)?;
+    let newton = &mut DampedNewton::new(&pattern);
+    solve_from(world, evaluation, &sites, (&pattern, newton))?;
     for _ in 0..MOST_PASSES {
         sites = sites_here(world, sites);
-        let turn_rad = solve_from(world, evaluation, &sites, &pattern)?;
+        let turn_rad = solve_from(world, evaluation, &sites, (&pattern, newton))?;
         if turn_rad <= NO_TURN_RAD || turn_rad > LEAST_SETTLING * before_rad {
             break;
         }
@@ -188,7 +189,7 @@ fn solve_from(
     world: &mut World,
     evaluation: &mut Evaluation,
     sites: &[Site],
-    pattern: &BlockPattern,
+    (pattern, newton): (&BlockPattern, &mut DampedNewton),
 ) -> Result<f64, SetupError> {
     let scales = Scales::of(world);
     let dimension = pattern.dimension();
@@ -211,7 +212,7 @@ fn solve_from(
         dimension,
         heading_hold_n_m,
     };
-    let outcome = DampedNewton::new(pattern).solve(&mut problem, &mut x, &settings);
+    let outcome = newton.solve(&mut problem, &mut x, &settings);
     // The last trial need not be the solution: leave the solution in the components.
     let mut residual = vec![0.0; dimension];
     let checked = problem.residual(&x, &mut residual);

@@ -145,3 +145,43 @@ fn an_ambiguity_is_an_error() {
         "{error}"
     );
 }
+
+#[test]
+fn a_known_order_is_used_again_in_another_world() {
+    let orders = Orders::default();
+    let of = |registrations: &[usize]| OrderOf {
+        registrations: registrations.to_vec(),
+        shuffle_seed: None,
+    };
+    let assemble = || {
+        let mut schedule = schedule();
+        schedule.add_systems((third.after(second), exclusive, first.after(exclusive)));
+        schedule.add_systems(second.after(first).run_if(every_other_time));
+        schedule
+    };
+    let mut logs = Vec::new();
+    for _ in 0..2 {
+        let mut world = World::new();
+        world.init_resource::<Log>();
+        let sequence = orders.sequence(of(&[1]), assemble, &mut world);
+        let mut sequence = sequence.expect("it can be ordered");
+        assert!(sequence.is_direct());
+        sequence.run(&mut world);
+        sequence.run(&mut world);
+        logs.push(world.resource::<Log>().clone());
+    }
+    assert_eq!(logs[0].0.len(), 7);
+    assert_eq!(logs[0], logs[1]);
+
+    // Other systems under the same name are ordered anew.
+    let mut world = World::new();
+    world.init_resource::<Log>();
+    let others = || {
+        let mut schedule = schedule();
+        schedule.add_systems((second, first).chain());
+        schedule
+    };
+    let sequence = orders.sequence(of(&[1]), others, &mut world);
+    sequence.expect("it can be ordered").run(&mut world);
+    assert_eq!(world.resource::<Log>().0, ["second", "first"]);
+}

@@ -16,6 +16,8 @@
 //! Assumptions: between rows density and pressure are close to exponential. Modes and trim need
 //! the continuous slope, because working altitudes are often rows.
 
+use std::sync::{Arc, LazyLock};
+
 use super::exponential_cells::ExponentialCells;
 use super::knots::{ColumnError, InterpolationError, Knots, check_positive};
 use super::monotone_cubic::MonotoneCubic;
@@ -28,7 +30,7 @@ pub struct AtmosphereTable {
     gas: Gas,
     knots: Knots,
     ln_density: MonotoneCubic,
-    density: ExponentialCells,
+    density: Arc<ExponentialCells>,
     ln_pressure: Option<MonotoneCubic>,
     temperature: Option<MonotoneCubic>,
 }
@@ -62,7 +64,7 @@ impl AtmosphereTable {
             .map_err(|error| error.within("temperature_k"))?;
         Ok(Self {
             gas,
-            density: ExponentialCells::new(&knots, &ln_density),
+            density: Arc::new(ExponentialCells::new(&knots, &ln_density)),
             knots,
             ln_density,
             ln_pressure,
@@ -72,12 +74,18 @@ impl AtmosphereTable {
 
     /// The Venus International Reference Atmosphere, 0-30 degrees, 0-100 km ([`super::vira`]).
     pub fn vira() -> Self {
+        // Many runs of a campaign share it.
+        static TABLE: LazyLock<AtmosphereTable> = LazyLock::new(AtmosphereTable::of_vira);
+        TABLE.clone()
+    }
+
+    fn of_vira() -> Self {
         let column =
             |index: usize| -> Vec<f64> { vira::ROWS.iter().map(|row| row[index]).collect() };
         let knots = Knots::from_checked(column(0));
         let ln_density = MonotoneCubic::of_checked_logarithm(&knots, &column(3));
         Self {
-            density: ExponentialCells::new(&knots, &ln_density),
+            density: Arc::new(ExponentialCells::new(&knots, &ln_density)),
             gas: Gas::CarbonDioxide,
             temperature: Some(MonotoneCubic::from_checked(&knots, &column(1))),
             ln_pressure: Some(MonotoneCubic::of_checked_logarithm(&knots, &column(2))),

@@ -88,6 +88,7 @@ fn power_iteration(
         .collect();
     let mut next = vec![0.0; mode.len()];
     let mut forces = vec![DVec3::ZERO; points.len()];
+    let mut motion = vec![(DVec3::ZERO, DVec3::ZERO); bodies.len()];
     let mut eigenvalue = 0.0;
     for _ in 0..ITERATIONS {
         let norm = mode.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -101,7 +102,7 @@ fn power_iteration(
             bodies,
             weights,
             &mode,
-            &mut forces,
+            (&mut forces, &mut motion),
             &mut next,
         );
         eigenvalue = mode.iter().zip(&next).map(|(a, b)| a * b).sum();
@@ -119,23 +120,23 @@ fn power_iteration(
     }
 }
 
-/// `out = B mode`.
+/// `out = B mode`; forces on points and motion of bodies are scratch.
 fn apply(
     segments: &[StiffSegment],
     points: &[Mobility],
     bodies: &[BodyMobility],
     weights: &[f64],
     mode: &[f64],
-    forces: &mut [DVec3],
+    (forces, motion): (&mut [DVec3], &mut [(DVec3, DVec3)]),
     out: &mut [f64],
 ) {
     forces.fill(DVec3::ZERO);
+    motion.fill((DVec3::ZERO, DVec3::ZERO));
     for ((segment, weight), amplitude) in segments.iter().zip(weights).zip(mode) {
         let pull = weight * amplitude * segment.direction;
         forces[segment.from_point] += pull;
         forces[segment.from_point + 1] -= pull;
     }
-    let mut motion = vec![(DVec3::ZERO, DVec3::ZERO); bodies.len()];
     for (point, force) in points.iter().zip(&*forces) {
         if let Mobility::OnBody { body, arm_m } = point {
             motion[*body].0 += *force;

@@ -41,10 +41,15 @@ pub fn parse_fields<T: DeserializeOwned>(
 
 /// True if `inner` is of the same value as `outer`, or of a part of it.
 fn stands_in(inner: &Diagnostic, outer: &Diagnostic) -> bool {
-    let (Some(inner), Some(outer)) = (&inner.path, &outer.path) else {
+    let Some(inner) = &inner.path else {
         return false;
     };
-    let below = inner.strip_prefix(outer.as_str());
+    // Everything is part of the root, which has no path.
+    let outer = match outer.path.as_deref() {
+        None | Some("") => return true,
+        Some(path) => path,
+    };
+    let below = inner.strip_prefix(outer);
     below.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
