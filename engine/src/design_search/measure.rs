@@ -64,13 +64,32 @@ pub enum Measure {
         #[serde(default)]
         high: Option<f64>,
     },
+    /// A number over `factor * variable^power`: a stress, of a tension and a diameter.
+    Quotient {
+        /// The number above.
+        of: Box<Measure>,
+        /// The variable below.
+        variable: String,
+        /// The factor below; 1 unless given.
+        #[serde(default = "one")]
+        factor: f64,
+        /// The power below; 1 unless given.
+        #[serde(default = "one")]
+        power: f64,
+        /// The unit of the quotient, as it stands at the end of names: `pa`.
+        unit: String,
+    },
+}
+
+fn one() -> f64 {
+    1.0
 }
 
 impl Measure {
-    /// The metric that it looks at, if any, and the field in which it stands.
+    /// The metric that it looks at itself, if any, and the field in which it stands.
     fn metric(&self) -> Option<(&str, &'static str)> {
         match self {
-            Self::Variable(_) | Self::Mass(_) => None,
+            Self::Variable(_) | Self::Mass(_) | Self::Quotient { .. } => None,
             Self::Value(metric)
             | Self::Mean(metric)
             | Self::Largest(metric)
@@ -88,6 +107,7 @@ impl Measure {
             Self::Variable(name) => unit_of(name).to_owned(),
             Self::Mass(_) => "kg".to_owned(),
             Self::FractionWithin { .. } => String::new(),
+            Self::Quotient { unit, .. } => unit.clone(),
             _ => {
                 let metrics = search.metrics.0.iter();
                 let metric = self.metric().and_then(|(metric, _)| {
@@ -123,12 +143,17 @@ impl Measure {
             }
         }
         match self {
-            Self::Variable(variable) => {
+            Self::Variable(variable) | Self::Quotient { variable, .. } => {
                 let all = names(&mut search.variables.0.iter().map(|(name, _)| name));
                 let all = all.iter().map(String::as_str).collect();
                 if let Some((message, help)) = known("variable", variable, all) {
-                    report.add("0", message, help);
+                    let field = match self {
+                        Self::Variable(_) => "0",
+                        _ => "variable",
+                    };
+                    report.add(field, message, help);
                 }
+                self.check_quotient(search, report);
             }
             Self::Mass(entities) if entities.is_empty() => {
                 report.add("0", "the mass of nothing", "name one entity or more");
@@ -159,9 +184,39 @@ impl Measure {
         }
     }
 
+    /// What a quotient says of its parts.
+    fn check_quotient(&self, search: &SearchSpec, report: &mut FieldReport) {
+        let Self::Quotient {
+            of,
+            variable,
+            factor,
+            power,
+            ..
+        } = self
+        else {
+            return;
+        };
+        report.within("of", |report| of.check(search, report));
+        if *factor == 0.0 {
+            report.add("factor", "a number over zero is none", "");
+        }
+        let mut variables = search.variables.0.iter();
+        let below = variables.find_map(|(name, of)| (name == variable).then_some(of));
+        if below.is_some_and(|below| below.from <= 0.0) {
+            let message = format!("`{variable}` to the power {power} may be zero or no number");
+            report.add("variable", message, "its bounds have to be above zero");
+        }
+    }
+
     /// Reports entities of the scene that are not there or have no mass.
     pub(super) fn check_scene(&self, scene: &Scene, report: &mut FieldReport) {
-        let Self::Mass(entities) = self else { return };
+        let entities = match self {
+            Self::Mass(entities) => entities,
+            Self::Quotient { of, .. } => {
+                return report.within("of", |report| of.check_scene(scene, report));
+            }
+            _ => return,
+        };
         for (place, name) in entities.iter().enumerate() {
             if mass_kg(scene, name).is_none() {
                 let all = scene.entities.iter().map(|entity| entity.name.as_str());
@@ -180,7 +235,11 @@ impl Measure {
 
     /// Whether it needs the scene of a design.
     pub(super) fn needs_scene(&self) -> bool {
-        matches!(self, Self::Mass(_))
+        match self {
+            Self::Mass(_) => true,
+            Self::Quotient { of, .. } => of.needs_scene(),
+            _ => false,
+        }
     }
 
     /// Its value of a design, with names and values of its variables, and the values of each metric over its runs.
@@ -191,6 +250,16 @@ impl Measure {
             Self::Mass(entities) => {
                 let masses = entities.iter().map(|name| mass_kg(of.scene?, name));
                 masses.sum()
+            }
+            Self::Quotient {
+                of: above,
+                variable,
+                factor,
+                power,
+                ..
+            } => {
+                let below = libm::pow(of.variable(variable)?, *power);
+                Some(above.value(of)? / (factor * below))
             }
             _ => {
                 let values = of.metric(self.metric()?.0)?;
@@ -217,7 +286,7 @@ impl Measure {
                 };
                 Some(values.iter().filter(is_within).count() as f64 / count)
             }
-            Self::Variable(_) | Self::Mass(_) => None,
+            Self::Variable(_) | Self::Mass(_) | Self::Quotient { .. } => None,
         }
     }
 }
