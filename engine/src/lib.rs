@@ -7,6 +7,7 @@ pub mod builtin;
 pub mod campaign;
 pub mod contents;
 mod coordinates;
+pub mod design_search;
 pub mod evaluation;
 mod event_location;
 mod integrator_choice;

@@ -1,6 +1,7 @@
 //! The commands: arguments in, messages and an exit code out.
 //!
-//! Exit codes: 0 done, 2 refused (nothing written), 3 stopped (what was recorded is kept).
+//! Exit codes: 0 done, 2 refused (nothing written), 3 stopped, or nothing found that keeps to the constraints
+//! (what was recorded is kept).
 
 mod campaign;
 mod check;
@@ -8,6 +9,7 @@ mod compare;
 mod comparison_text;
 mod finding;
 mod modes;
+mod optimise;
 mod progress;
 mod reproduce;
 mod run;
@@ -53,6 +55,8 @@ enum Command {
     /// Run a scene many times with inputs that vary, here or in shards, and fold what comes out.
     #[command(subcommand)]
     Campaign(campaign::CampaignCommand),
+    /// Find the best values of fields of a scene within bounds and constraints.
+    Optimise(optimise::OptimiseArguments),
 }
 
 /// What every command that reads a scene takes.
@@ -254,5 +258,6 @@ pub fn main(plugins: &[&dyn Plugin]) -> ExitCode {
         Command::Modes(arguments) => modes::modes(&simulator, &arguments),
         Command::Wind(arguments) => wind::wind(&simulator, &arguments),
         Command::Campaign(command) => campaign::campaign(&simulator, &command),
+        Command::Optimise(arguments) => optimise::optimise(&simulator, &arguments),
     }
 }

@@ -10,6 +10,7 @@ use super::plan::Plan;
 use super::plan_tables::read_tables;
 use super::preparation::{CAMPAIGN_FILE, SCENE_FILE};
 use super::specification::{CampaignSpec, Faults, read_specification};
+use crate::scene::source::Source;
 use crate::scene::{Scene, SceneError};
 
 /// A campaign, ready to run any of its runs. It can be shared by threads.
@@ -23,7 +24,7 @@ pub struct Campaign {
     /// The inputs of each run.
     pub plan: Plan,
     /// The scene with what all runs have in common.
-    pub(super) scene_text: String,
+    pub(crate) scene_text: String,
     /// The scene itself, if nothing but the seed varies: then it is read once.
     pub(super) common_scene: OnceLock<Result<Scene, SceneError>>,
 }
@@ -35,34 +36,28 @@ impl Campaign {
     /// It is no folder of a campaign, or what it holds is not what it was made of.
     pub fn open(folder: &Path) -> Result<Self, CampaignError> {
         let manifest = Manifest::open(folder)?;
-        let input = folder.join(INPUT);
-        let mut files = Vec::new();
-        for name in &manifest.files {
-            let path = input.join(name);
-            let text = fs::read_to_string(&path)
-                .map_err(|error| CampaignError::unreadable(&path, &error))?;
-            files.push((name.clone(), text));
-        }
-        if fingerprint_of(&files) != manifest.fingerprint {
-            let message = format!("the files in `{}` have been changed", input.display());
-            let help = "put them back, or make a new campaign of the changed ones";
-            return Err(CampaignError::refused(message, help));
-        }
-        let text_of = |name: &str| {
-            let file = files.iter().find(|(file, _)| file == name);
-            file.map(|(_, text)| text.clone()).unwrap_or_default()
-        };
-        let shown = input.join(CAMPAIGN_FILE).display().to_string();
-        let (specification, source) = read_specification(&shown, &text_of(CAMPAIGN_FILE))?;
+        let files = read_input(folder, &manifest)?;
+        let shown = folder.join(INPUT).join(CAMPAIGN_FILE).display().to_string();
+        let (specification, source) = read_specification(&shown, text_of(&files, CAMPAIGN_FILE))?;
+        Self::of_input(folder, manifest, (specification, &source), &files)
+    }
+
+    /// Of a specification, whose text is `source`, and the files that its folder has in `input/`.
+    pub(crate) fn of_input(
+        folder: &Path,
+        manifest: Manifest,
+        (specification, source): (CampaignSpec, &Source),
+        files: &[(String, String)],
+    ) -> Result<Self, CampaignError> {
         let mut faults = Faults::default();
         let read = |name: &str| {
             let file = manifest.tables.get(name);
-            Ok(file.map(|file| text_of(file)).unwrap_or_default())
+            Ok(file.map_or_else(String::new, |file| text_of(files, file).to_owned()))
         };
         let (tables, _) = read_tables(&specification, &read, &mut faults);
         let plan = Plan::new(&specification, tables, &mut faults);
-        faults.into_result(&source)?;
-        let scene_text = text_of(SCENE_FILE);
+        faults.into_result(source)?;
+        let scene_text = text_of(files, SCENE_FILE).to_owned();
         match plan {
             Some(plan) if plan.runs == manifest.runs => Ok(Self {
                 folder: folder.to_owned(),
@@ -87,4 +82,31 @@ impl Campaign {
     pub fn input_folder(&self) -> PathBuf {
         self.folder.join(INPUT)
     }
+}
+
+/// Names and texts of the files in `input/`, which have to be those of the manifest.
+pub(crate) fn read_input(
+    folder: &Path,
+    manifest: &Manifest,
+) -> Result<Vec<(String, String)>, CampaignError> {
+    let input = folder.join(INPUT);
+    let mut files = Vec::new();
+    for name in &manifest.files {
+        let path = input.join(name);
+        let text =
+            fs::read_to_string(&path).map_err(|error| CampaignError::unreadable(&path, &error))?;
+        files.push((name.clone(), text));
+    }
+    if fingerprint_of(&files) != manifest.fingerprint {
+        let message = format!("the files in `{}` have been changed", input.display());
+        let help = "put them back, or begin anew with the changed ones in another folder";
+        return Err(CampaignError::refused(message, help));
+    }
+    Ok(files)
+}
+
+/// The text of a file; empty if there is none.
+pub(crate) fn text_of<'a>(files: &'a [(String, String)], name: &str) -> &'a str {
+    let file = files.iter().find(|(file, _)| file == name);
+    file.map_or("", |(_, text)| text)
 }

@@ -77,8 +77,18 @@ impl Campaign {
     /// Does a run, by its index from 0. What goes wrong with it is in the record.
     #[must_use]
     pub fn run(&self, simulator: &Simulator, index: u64) -> Record {
+        self.run_with(simulator, index, &self.plan.inputs(index).overrides())
+    }
+
+    /// Does a run with other overrides of the scene than its inputs.
+    pub(crate) fn run_with(
+        &self,
+        simulator: &Simulator,
+        index: u64,
+        overrides: &[String],
+    ) -> Record {
         let done = catch_unwind(AssertUnwindSafe(|| {
-            let scene = self.scene(simulator, index)?;
+            let scene = self.scene_with(simulator, overrides)?;
             let mut simulation = simulator.build(&scene)?;
             let mut sink = RunSink::new(self);
             let summary = simulation.run(&mut sink, &mut |_| {});
@@ -132,15 +142,25 @@ impl Campaign {
     pub fn scene(&self, simulator: &Simulator, index: u64) -> Result<Scene, SceneError> {
         let inputs = self.plan.inputs(index);
         if let (true, Ok(seed)) = (inputs.fields.is_empty(), inputs.seed.parse()) {
-            let common = self.common_scene.get_or_init(|| self.load(simulator, &[]));
+            let common = self
+                .common_scene
+                .get_or_init(|| self.scene_with(simulator, &[]));
             let mut scene = common.clone()?;
             scene.run.seed = seed;
             return Ok(scene);
         }
-        self.load(simulator, &inputs.overrides())
+        self.scene_with(simulator, &inputs.overrides())
     }
 
-    fn load(&self, simulator: &Simulator, overrides: &[String]) -> Result<Scene, SceneError> {
+    /// What all runs have in common, with overrides.
+    ///
+    /// # Errors
+    /// What the scene refuses of them, rendered.
+    pub(crate) fn scene_with(
+        &self,
+        simulator: &Simulator,
+        overrides: &[String],
+    ) -> Result<Scene, SceneError> {
         let (text, folder) = (self.scene_text.clone(), self.input_folder());
         simulator.load_text(SCENE_FILE, text, &folder, overrides)
     }
@@ -157,7 +177,7 @@ impl Campaign {
     }
 }
 
-fn first_line(error: &SceneError) -> String {
+pub(crate) fn first_line(error: &SceneError) -> String {
     let first = error.text.lines().next().unwrap_or_default();
     first.strip_prefix("error: ").unwrap_or(first).to_owned()
 }

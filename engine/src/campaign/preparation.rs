@@ -39,45 +39,84 @@ pub fn prepare(simulator: &Simulator, file: &Path, shards: u64) -> Result<Prepar
     })?;
     let (specification, source) = read_specification(&file.display().to_string(), &text)?;
     let folder = file.parent().unwrap_or_else(|| Path::new("."));
+    let checked = check(simulator, folder, &specification, &source)?;
+    checked.into_prepared(CAMPAIGN_FILE, text, &specification, shards)
+}
+
+/// A specification that fits its scene.
+pub(crate) struct Checked {
+    plan: Plan,
+    /// The scene with what all runs have in common.
+    pub(crate) scene: Scene,
+    tables: Files,
+}
+
+/// Checks a specification that is in order by itself against what it names in `folder`; `source` is its text.
+///
+/// # Errors
+/// Everything that is wrong, rendered.
+pub(crate) fn check(
+    simulator: &Simulator,
+    folder: &Path,
+    specification: &CampaignSpec,
+    source: &Source,
+) -> Result<Checked, SceneError> {
     let mut faults = Faults::default();
     let read =
         |name: &str| std::fs::read_to_string(folder.join(name)).map_err(|error| error.to_string());
-    let (tables, table_files) = read_tables(&specification, &read, &mut faults);
-    faults.into_result(&source)?;
+    let (tables, table_files) = read_tables(specification, &read, &mut faults);
+    faults.into_result(source)?;
     let mut faults = Faults::default();
-    let plan = Plan::new(&specification, tables, &mut faults);
-    faults.into_result(&source)?;
+    let plan = Plan::new(specification, tables, &mut faults);
+    faults.into_result(source)?;
     let Some(plan) = plan else {
         return Err(SceneError::plain("the campaign has no plan"));
     };
     let checked = SceneOfCampaign {
         simulator,
         file: &folder.join(&specification.scene),
-        specification: &specification,
-        source: &source,
+        specification,
+        source,
     };
     let scene = checked.check(&plan)?;
-    if shards > plan.runs {
-        let runs = plan.runs;
-        return Err(SceneError::plain(format_args!(
-            "{shards} shards are more than the {runs} runs"
-        )));
-    }
-    let (files, tables) = input_files(text, &scene, table_files)?;
-    Ok(Prepared {
-        manifest: Manifest {
-            layout: LAYOUT,
-            version: VERSION.to_owned(),
-            campaign: specification.name.clone(),
-            fingerprint: fingerprint_of(&files),
-            seed: specification.seed,
-            runs: plan.runs,
-            shards,
-            files: files.iter().map(|(name, _)| name.clone()).collect(),
-            tables,
-        },
-        files,
+    Ok(Checked {
+        plan,
+        scene,
+        tables: table_files,
     })
+}
+
+impl Checked {
+    /// With the text of the specification, which `input/` will have under `name`.
+    pub(crate) fn into_prepared(
+        self,
+        name: &str,
+        text: String,
+        specification: &CampaignSpec,
+        shards: u64,
+    ) -> Result<Prepared, SceneError> {
+        let runs = self.plan.runs;
+        if shards > runs {
+            return Err(SceneError::plain(format_args!(
+                "{shards} shards are more than the {runs} runs"
+            )));
+        }
+        let (files, tables) = input_files((name, text), &self.scene, self.tables)?;
+        Ok(Prepared {
+            manifest: Manifest {
+                layout: LAYOUT,
+                version: VERSION.to_owned(),
+                campaign: specification.name.clone(),
+                fingerprint: fingerprint_of(&files),
+                seed: specification.seed,
+                runs,
+                shards,
+                files: files.iter().map(|(name, _)| name.clone()).collect(),
+                tables,
+            },
+            files,
+        })
+    }
 }
 
 impl Prepared {
@@ -131,10 +170,14 @@ type InputFiles = (
     std::collections::BTreeMap<String, String>,
 );
 
-fn input_files(campaign: String, scene: &Scene, tables: Files) -> Result<InputFiles, SceneError> {
+fn input_files(
+    (name, text): (&str, String),
+    scene: &Scene,
+    tables: Files,
+) -> Result<InputFiles, SceneError> {
     let as_run = scene_as_run(scene)?;
     let mut files = vec![
-        (CAMPAIGN_FILE.to_owned(), campaign),
+        (name.to_owned(), text),
         (SCENE_FILE.to_owned(), as_run.text),
     ];
     let mut names = std::collections::BTreeMap::new();
@@ -252,7 +295,7 @@ impl SceneOfCampaign<'_> {
 }
 
 /// What a scene says of a field, shown in the campaign.
-fn add(faults: &mut Faults, place: &str, change: &str, error: &SceneError) {
+pub(crate) fn add(faults: &mut Faults, place: &str, change: &str, error: &SceneError) {
     let mut lines = error.text.lines();
     let first = lines.next().unwrap_or_default();
     let message = first.strip_prefix("error: ").unwrap_or(first);

@@ -2,6 +2,7 @@
 
 use aerobot_components::scene_component::FieldReport;
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 
 use super::distributions::Distribution;
 use super::envelopes::EnvelopeSpec;
@@ -92,11 +93,11 @@ pub struct KeepSpec {
 
 /// What is wrong with a campaign, shown in its text.
 #[derive(Default)]
-pub(super) struct Faults(pub(super) FieldReport);
+pub(crate) struct Faults(pub(crate) FieldReport);
 
 impl Faults {
     /// The message, if there is anything wrong.
-    pub(super) fn into_result(self, source: &Source) -> Result<(), SceneError> {
+    pub(crate) fn into_result(self, source: &Source) -> Result<(), SceneError> {
         let violations = self.0.into_violations();
         if violations.is_empty() {
             return Ok(());
@@ -111,8 +112,19 @@ fn refuse(source: &Source, diagnostics: &[Diagnostic]) -> SceneError {
     }
 }
 
+/// Whether a field is said to be missing in which something is wrong.
+fn is_missing_for(diagnostic: &Diagnostic, paths: &[String]) -> bool {
+    paths.iter().any(|path| {
+        let field = path.split('.').next().unwrap_or_default();
+        diagnostic.path.is_none()
+            && diagnostic
+                .message
+                .ends_with(&format!("needs the field `{field}`"))
+    })
+}
+
 /// The path of an entry of a map as it stands in reports: `vary."run.seed"`.
-pub(super) fn entry_path(map: &str, name: &str) -> String {
+pub(crate) fn entry_path(map: &str, name: &str) -> String {
     let path = FieldPath::default()
         .join(Segment::Name(map.to_owned()))
         .join(Segment::Name(name.to_owned()));
@@ -127,27 +139,40 @@ pub fn read_specification(
     file_name: &str,
     text: &str,
 ) -> Result<(CampaignSpec, Source), SceneError> {
-    let source = Source::new(file_name, text);
-    let root = read_tree(&source).map_err(|diagnostic| refuse(&source, &[diagnostic]))?;
-    let in_text = text_diagnostics(&source, &root);
-    let read = parse_fields::<CampaignSpec>(source.text(), &root, "");
-    let specification = match read {
-        Ok(specification) if in_text.is_empty() => specification,
-        found => {
-            let mut diagnostics = found.err().unwrap_or_default();
-            diagnostics.retain(|diagnostic| !echoes(diagnostic, &in_text));
-            diagnostics.extend(in_text);
-            return Err(refuse(&source, &diagnostics));
-        }
-    };
+    let (specification, source) = read_as::<CampaignSpec>(file_name, text)?;
     let mut faults = Faults::default();
     specification.check(&mut faults.0);
     faults.into_result(&source)?;
     Ok((specification, source))
 }
 
+/// Reads a specification of any type; what it says is not checked yet.
+pub(crate) fn read_as<T: DeserializeOwned>(
+    file_name: &str,
+    text: &str,
+) -> Result<(T, Source), SceneError> {
+    let source = Source::new(file_name, text);
+    let root = read_tree(&source).map_err(|diagnostic| refuse(&source, &[diagnostic]))?;
+    let in_text = text_diagnostics(&source, &root);
+    let read = parse_fields::<T>(source.text(), &root, "");
+    match read {
+        Ok(specification) if in_text.is_empty() => Ok((specification, source)),
+        found => {
+            let mut diagnostics = found.err().unwrap_or_default();
+            diagnostics.retain(|diagnostic| !echoes(diagnostic, &in_text));
+            diagnostics.extend(in_text);
+            let paths: Vec<String> = diagnostics
+                .iter()
+                .filter_map(|of| of.path.clone())
+                .collect();
+            diagnostics.retain(|diagnostic| !is_missing_for(diagnostic, &paths));
+            Err(refuse(&source, &diagnostics))
+        }
+    }
+}
+
 impl CampaignSpec {
-    fn check(&self, report: &mut FieldReport) {
+    pub(crate) fn check(&self, report: &mut FieldReport) {
         check_name("name", &self.name, report);
         let set: Vec<(&str, &String)> = self.set.0.iter().map(|(path, _)| ("set", path)).collect();
         let vary: Vec<(&str, &String)> =
@@ -247,7 +272,7 @@ impl CampaignSpec {
     }
 }
 
-fn check_name(path: &str, name: &str, report: &mut FieldReport) {
+pub(crate) fn check_name(path: &str, name: &str, report: &mut FieldReport) {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
     if name.is_empty() || name.starts_with('.') || !name.chars().all(plain) {
         let message = format!("`{name}` cannot be a name here");
@@ -260,7 +285,7 @@ fn check_name(path: &str, name: &str, report: &mut FieldReport) {
 }
 
 /// A name in a table ends with the unit of what it names.
-fn check_unit(path: &str, name: &str, unit: &str, report: &mut FieldReport) {
+pub(crate) fn check_unit(path: &str, name: &str, unit: &str, report: &mut FieldReport) {
     if !unit.is_empty() && !name.ends_with(&format!("_{unit}")) {
         report.add(
             path,
