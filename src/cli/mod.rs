@@ -3,6 +3,7 @@
 //! Exit codes: 0 done, 2 refused (nothing written), 3 stopped (what was recorded is kept).
 
 mod campaign;
+mod campaign_submit;
 mod check;
 mod compare;
 mod comparison_text;
