@@ -51,8 +51,9 @@ impl Scheduler for Slurm {
         words.push(format!("--comment={}:{}", order.tag, array.offset));
         words.push(format!("--array={}", ranges(&array.indices)));
         words.push(format!("--chdir={}", order.folder));
-        // From the folder: in an absolute path Slurm would replace `%`.
-        words.push(format!("--output={OUTPUT}/%A_%a.out"));
+        // Slurm puts numbers for `%A` and `%a`, and `%` for `%%`.
+        let folder = order.folder.replace('%', "%%");
+        words.push(format!("--output={folder}/{OUTPUT}/%A_%a.out"));
         words.extend(["--open-mode=append", "--requeue", "--ntasks=1"].map(str::to_owned));
         words.push(format!("--cpus-per-task={cpus}"));
         for (option, value) in [("partition", partition), ("time", time), ("mem", memory)] {
@@ -70,6 +71,10 @@ impl Scheduler for Slurm {
     }
 
     fn submit(&self, order: &Order, array: &JobArray) -> Result<String, CampaignError> {
+        if order.folder.contains('\\') {
+            let message = format!("`{}`: Slurm takes no folder with a backslash", order.folder);
+            return Err(CampaignError::refused(message, "give it another name"));
+        }
         let Invocation { words, input } = self.invocation(order, array);
         let answer = answer_of(Command::new(&words[0]).args(&words[1..]), &input)?;
         let job = answer.trim().split(';').next().unwrap_or_default();
