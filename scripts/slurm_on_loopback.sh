@@ -5,7 +5,7 @@
 #   scripts/slurm_on_loopback.sh [kill|silence|none] [--install]
 #
 #   kill      the node dies: its slurmd, its slurmstepd and what they run get SIGKILL (the default)
-#   silence   the node is only thought dead: its slurmd is stopped, and what it runs goes on
+#   silence   the node is only thought dead: it is stopped, and what it runs wakes up when Slurm has begun its shard anew
 #   none      no node is lost
 #   --install apt-get installs `slurm-wlm` and `munge` if they are missing; otherwise nothing is installed
 #
@@ -63,14 +63,9 @@ failures=0
 
 # Processes of jobs of this Slurm, on one node if that is given.
 tasks() {
-    local environment
-    for environment in /proc/[0-9]*/environ; do
-        { tr '\0' '\n' <"$environment" >"$scratch/environment"; } 2>/dev/null || continue
-        grep -qxF "SLURM_CONF=$SLURM_CONF" "$scratch/environment" || continue
-        grep -qx "SLURMD_NODENAME=${1:-w[12]}" "$scratch/environment" || continue
-        environment=${environment%/environ}
-        echo "${environment#/proc/}"
-    done
+    local found
+    found=$(grep -lszxF "SLURM_CONF=$SLURM_CONF" /proc/[0-9]*/environ)
+    [ -z "$found" ] || grep -lszx "SLURMD_NODENAME=${1:-w[12]}" $found | tr -cd '0-9\n'
 }
 # The slurmstepd above each of these processes.
 steps() {
@@ -214,26 +209,32 @@ check "  as two arrays, since indices are below MaxArraySize=6" \
 check "submitted again at once: exit 0" submit
 check "  and no shard has a second job" has "$scratch/said" "nothing to submit"
 
+# One job is taken away, as by a user or a limit: the queue ends without its shard.
+last=$(squeue --noheader --array --states=PD --format='%i %K %k' | awk '$2 == 3 && /:5$/ { print $1 }')
+check "the job of shard 8 ($last) is cancelled before it runs" scancel "$last"
+
 # The shard on a node, and how many of its runs are finished.
 shard_on() {
     squeue --noheader --nodes="$1" --states=R --format='%K %k' 2>/dev/null |
         awk 'NR == 1 { n = split($2, parts, ":"); print $1 + parts[n] }'
 }
 is_in_the_middle() {
+    local lines
     lost=$(shard_on w1)
-    [ -n "$lost" ] && [ "$(finished)" -ge 1 ] && [ -e "$(part "$lost")" ] &&
-        [ "$(wc -l <"$(part "$lost")")" -gt $((rate / 2)) ]
+    [ -n "$lost" ] && [ "$(finished)" -ge 2 ] && [ -e "$(part "$lost")" ] || return 1
+    lines=$(wc -l <"$(part "$lost")")
+    [ "$lines" -gt 5 ] && [ "$lines" -lt $((rate * shard_s / 2)) ]
 }
 state_of() { sinfo --noheader --nodes="$1" --format=%T; }
 is_down() { [[ $(state_of w1) == down* ]]; }
-has_moved() { squeue --noheader --array --nodes=w2 --states=R --format='%K %k' | grep -q .; }
 lose() {
     local pids daemon
     daemon=$(pid_of w1)
+    pids=$(tasks w1)
     if [ $way = silence ]; then
-        kill -STOP "$daemon"
+        kill -STOP "$daemon" $pids
+        asleep=$pids
     else
-        pids=$(tasks w1)
         kill -KILL "$daemon" $(steps $pids) $pids
         cp "$(part "$lost")" "$scratch/left_behind"
     fi
@@ -244,19 +245,29 @@ if [ $way != none ]; then
     check "  w1 is lost ($way) with shard $lost in work" lose
     check "  Slurm takes w1 for down" within 60 is_down
 fi
+has_moved() { [ "$(shard_on w2)" = "$lost" ]; }
+lines_in() { wc -l <"$(part "$lost")"; }
+if [ $way = silence ]; then
+    lines=$(lines_in)
+    need "  shard $lost is begun anew on w2" within 60 has_moved
+    sleep 3
+    check "  and waits there, since a process of w1 holds its journal" has_moved
+    check "    to which nothing is added" [ "$(lines_in)" = "$lines" ]
+    check "  what w1 runs wakes up" kill -CONT $asleep
+fi
 
-# One job is taken away, as by a user or a limit: the queue ends without its shard.
-last=$(squeue --noheader --array --states=PD --format='%i %K %k' | awk '$2 == 3 && /:5$/ { print $1 }')
-check "the job of shard 8 ($last) is cancelled before it runs" scancel "$last"
 queue_is_empty() { [ -z "$(squeue --noheader)" ]; }
 need "the queue is empty" within 150 queue_is_empty
 need "  and all shards but one are finished" [ "$(finished)" = $((shards - 1)) ]
+cat "$folder/slurm/"* >"$scratch/printed"
 if [ $way = kill ]; then
     check "  shard $lost went on after the $(($(wc -l <"$scratch/left_behind") - 1)) runs that the dead node had finished" \
         starts_with "$(journal "$lost")" "$scratch/left_behind"
 fi
 if [ $way = silence ]; then
-    check "  no run of shard $lost was done twice" \
+    check "  shard $lost was finished on w1, and the job on w2 found it so" \
+        sh -c "[ \"\$(grep -c '^shard $lost/$shards:' '$scratch/printed')\" = 2 ] && grep -q '^shard $lost/$shards: [0-9]* runs\$' '$scratch/printed'"
+    check "  no run of it was done twice" \
         [ "$(wc -l <"$(journal "$lost")")" = "$(cut -f1 "$(journal "$lost")" | sort -u | wc -l)" ]
 fi
 
@@ -268,7 +279,7 @@ all_are_finished() { [ "$(finished)" = $shards ]; }
 need "  and all shards are finished" within 60 all_are_finished
 check "nothing is left to submit" submit
 check "  and it says so" has "$scratch/said" "all $shards shards are finished"
-check "jobs have left what they print in the folder" test -n "$(ls "$folder/slurm/")"
+check "jobs have left what they print in the folder" has "$scratch/printed" "shard 1/$shards:"
 need "the shards are merged" "$aerobot" campaign merge "$folder" --quiet
 
 check "the same campaign in one process" \
