@@ -4,10 +4,10 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::thread::available_parallelism;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use aerobot_engine::campaign::definition::Campaign;
-use aerobot_engine::campaign::journal::read_journal;
+use aerobot_engine::campaign::journal::{read_journal, wait_for};
 use aerobot_engine::campaign::preparation::prepare;
 use aerobot_engine::campaign::record::Record;
 use aerobot_engine::campaign::results::write_results;
@@ -19,6 +19,7 @@ use aerobot_engine::run_folder::Destination;
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::campaign_submit::{SubmitArguments, submit};
 use super::{REFUSED, STOPPED, complain, say};
 
 /// Commands on campaigns.
@@ -28,6 +29,8 @@ pub(super) enum CampaignCommand {
     Run(RunCampaignArguments),
     /// Check a campaign and make its folder, for shards that are run wherever it can be read.
     Plan(PlanArguments),
+    /// Submit the missing shards of a planned campaign to a scheduler.
+    Submit(SubmitArguments),
     /// Say how far the shards of a campaign are.
     Status(FolderArguments),
     /// Fold the finished shards of a campaign into its results.
@@ -43,9 +46,13 @@ pub(super) struct RunCampaignArguments {
     /// Folder for the results of a campaign file; `runs/<name of the campaign>` unless given.
     #[arg(long, value_name = "DIR", conflicts_with = "shard")]
     out: Option<PathBuf>,
-    /// The shard to run of a planned campaign: `K/N`, or `auto` from the array variables of a scheduler.
+    /// The shard to run of a planned campaign: `K/N`, or `auto` from the array variables of a scheduler, or
+    /// `auto+M` for M more than they say.
     #[arg(long, value_name = "K/N")]
     shard: Option<String>,
+    /// Seconds to wait for another process that is at work on it.
+    #[arg(long, value_name = "SECONDS", default_value_t = 0)]
+    wait: u64,
     /// Number of threads; all that there are unless given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     workers: Option<u32>,
@@ -112,6 +119,7 @@ pub(super) fn campaign(simulator: &Simulator, command: &CampaignCommand) -> Exit
     let done = match command {
         CampaignCommand::Run(arguments) => run(simulator, arguments),
         CampaignCommand::Plan(arguments) => plan(simulator, arguments),
+        CampaignCommand::Submit(arguments) => submit(arguments),
         CampaignCommand::Status(arguments) => status(&arguments.folder),
         CampaignCommand::Merge(arguments) => merge(simulator, arguments),
         CampaignCommand::Replay(arguments) => replay(simulator, arguments),
@@ -149,6 +157,10 @@ fn run(simulator: &Simulator, arguments: &RunCampaignArguments) -> Done {
         workers,
         precision: precision.map(|(width, metric)| Precision { metric, width }),
     };
+    wait_for(
+        &shard.part_file(&folder),
+        Duration::from_secs(arguments.wait),
+    )?;
     let (records, rate) = run_with_bar(simulator, &campaign, shard, &work, arguments.quiet)?;
     if arguments.shard.is_some() {
         if !arguments.quiet {

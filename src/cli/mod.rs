@@ -4,6 +4,7 @@
 //! (what was recorded is kept).
 
 mod campaign;
+mod campaign_submit;
 mod check;
 mod compare;
 mod comparison_text;

@@ -15,6 +15,8 @@ use super::record::Record;
 
 /// Wall time after which lines are handed to the disk.
 const HOLD: Duration = Duration::from_secs(1);
+/// Wall time for which a journal that is held is asked for again: [`is_held`] holds it for a moment.
+const PATIENCE: Duration = Duration::from_millis(200);
 
 /// An open journal, held by this process alone.
 pub struct Journal {
@@ -76,6 +78,49 @@ pub fn read_journal(
     }
 }
 
+/// Whether a process is at work on a journal: on this machine, or on any with which the file system shares its
+/// locks.
+///
+/// # Errors
+/// The file cannot be read, or its file system has no locks.
+pub fn is_held(path: &Path) -> Result<bool, CampaignError> {
+    let tried = match File::open(path) {
+        Ok(file) => file.try_lock_shared(),
+        Err(error) => Err(TryLockError::Error(error)),
+    };
+    match tried {
+        Ok(()) => Ok(false),
+        Err(TryLockError::WouldBlock) => Ok(true),
+        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(TryLockError::Error(error)) => Err(CampaignError::unreadable(path, &error)),
+    }
+}
+
+/// Waits until no process is at work on a journal, at most so long.
+///
+/// # Errors
+/// As [`is_held`].
+pub fn wait_for(path: &Path, longest: Duration) -> Result<(), CampaignError> {
+    let begun = Instant::now();
+    while begun.elapsed() < longest && is_held(path)? {
+        std::thread::sleep(HOLD);
+    }
+    Ok(())
+}
+
+/// Locks a file for this process alone.
+fn lock(file: &File) -> Result<(), TryLockError> {
+    let begun = Instant::now();
+    loop {
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) if begun.elapsed() < PATIENCE => {
+                std::thread::sleep(PATIENCE / 10);
+            }
+            other => return other,
+        }
+    }
+}
+
 impl Journal {
     /// Opens a journal to go on with it, or begins one; gives the records that it has.
     ///
@@ -89,7 +134,7 @@ impl Journal {
         let mut options = OpenOptions::new();
         options.read(true).write(true).create(true).truncate(false);
         let mut file = options.open(path).map_err(unwritten)?;
-        match file.try_lock() {
+        match lock(&file) {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
                 let message = format!("another process is at work on `{}`", path.display());

@@ -28,9 +28,11 @@ pub mod record;
 pub mod results;
 pub mod running;
 pub mod shards;
+pub mod slurm;
 pub mod sobol;
 pub mod specification;
 pub mod statistics;
+pub mod submission;
 pub mod summary;
 pub mod worker_pool;
 

@@ -45,10 +45,19 @@ const VARIABLES: [(&str, u64); 4] = [
     ("AWS_BATCH_JOB_ARRAY_INDEX", 1),
 ];
 
+/// What `auto` or `auto+M` adds to the index in an array.
+fn offset_of(text: &str) -> Option<u64> {
+    match text.strip_prefix("auto")? {
+        "" => Some(0),
+        more => more.strip_prefix('+')?.parse().ok(),
+    }
+}
+
 impl Shard {
     /// Of `K/N`, or of `auto`: from the array variables of Slurm and PBS, whose indices have to be numbers of shards
-    /// (`--array=1-N`, `-J 1-N`), and of Kubernetes and AWS Batch, which count from 0. `variable` reads the
-    /// environment; `count` is the number of shards that were planned.
+    /// (`--array=1-N`, `-J 1-N`), and of Kubernetes and AWS Batch, which count from 0. `auto+M` adds M to that, for
+    /// arrays that have to be shorter than the campaign. `variable` reads the environment; `count` is the number of
+    /// shards that were planned.
     ///
     /// # Errors
     /// What is wrong with the text or the variables.
@@ -58,7 +67,7 @@ impl Shard {
         variable: &dyn Fn(&str) -> Option<String>,
     ) -> Result<Self, CampaignError> {
         let refused = |message: String, help: &str| Err(CampaignError::refused(message, help));
-        let shard = if text == "auto" {
+        let shard = if let Some(offset) = offset_of(text) {
             let found = VARIABLES
                 .iter()
                 .find_map(|(name, add)| Some((name, add, variable(name)?)));
@@ -70,15 +79,17 @@ impl Shard {
             let Some(index) = value.trim().parse::<u64>().ok() else {
                 return refused(format!("`{name}={value}` is not an index"), "");
             };
-            let number = index.saturating_add(*add);
-            if number == 0 || number > count {
-                let message = format!("`{name}={value}` is none of the {count} shards");
+            let number = index.saturating_add(*add).saturating_add(offset);
+            if number <= offset || number > count {
+                let message =
+                    format!("`--shard {text}` with `{name}={value}` is none of the {count} shards");
+                let rest = count.saturating_sub(offset);
                 let help = format!(
                     "an array of all of them: {}",
                     if *add == 0 {
-                        format!("1-{count}")
+                        format!("1-{rest}")
                     } else {
-                        format!("0-{}", count - 1)
+                        format!("0-{}", rest.saturating_sub(1))
                     }
                 );
                 return refused(message, &help);
@@ -88,7 +99,10 @@ impl Shard {
             let parts = text.split_once('/');
             let parts = parts.and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
             let Some((number, of)) = parts else {
-                return refused(format!("`--shard {text}`: expected `K/N` or `auto`"), "");
+                return refused(
+                    format!("`--shard {text}`: expected `K/N`, `auto` or `auto+M`"),
+                    "",
+                );
             };
             if of != count {
                 let message = format!("`--shard {text}`: the campaign has {count} shards");
@@ -186,8 +200,25 @@ mod tests {
         assert_eq!(of("auto", Some(("PBS_ARRAY_INDEX", "1"))), Ok(1));
         assert_eq!(of("auto", Some(("JOB_COMPLETION_INDEX", "0"))), Ok(1));
         assert_eq!(of("auto", Some(("AWS_BATCH_JOB_ARRAY_INDEX", "7"))), Ok(8));
+        assert_eq!(of("auto+5", Some(("SLURM_ARRAY_TASK_ID", "3"))), Ok(8));
+        assert_eq!(of("auto+5", Some(("JOB_COMPLETION_INDEX", "0"))), Ok(6));
         for (text, variable, words) in [
             ("auto", None, "finds none of"),
+            (
+                "auto+5",
+                Some(("SLURM_ARRAY_TASK_ID", "4")),
+                "none of the 8",
+            ),
+            (
+                "auto+5",
+                Some(("SLURM_ARRAY_TASK_ID", "0")),
+                "none of the 8",
+            ),
+            (
+                "auto-5",
+                Some(("SLURM_ARRAY_TASK_ID", "7")),
+                "expected `K/N`",
+            ),
             ("auto", Some(("SLURM_ARRAY_TASK_ID", "0")), "1-8"),
             ("auto", Some(("JOB_COMPLETION_INDEX", "8")), "0-7"),
             ("auto", Some(("PBS_ARRAY_INDEX", "one")), "not an index"),
