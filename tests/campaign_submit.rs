@@ -36,7 +36,7 @@ here=${0%/*}/..
 echo '41;cluster'
 "#;
 const SQUEUE: &str = r#"#!/bin/sh
-printf '%s\n' "$@" >"${0%/*}/../asked"
+printf '%s\n' "$@" "$SQUEUE_STATES" >"${0%/*}/../asked"
 [ -e "${0%/*}/../queue" ] || exit 0
 while IFS= read -r line; do printf '%s\n' "$line"; done <"${0%/*}/../queue"
 "#;
@@ -48,7 +48,7 @@ impl Site {
         let scene = fs::read_to_string("scenes/examples/free_fall.ron").unwrap();
         scratch.file("free_fall.ron", &scene);
         let campaign = r#"(
-    name: "falls from, high",
+    name: "falls",
     scene: "free_fall.ron",
     runs: 16,
     seed: 7,
@@ -160,7 +160,7 @@ fn a_dry_run_prints_what_a_submission_does() {
     };
     for (name, value) in [
         ("array", "1,3-4,6-8"),
-        ("job-name", "aerobot-falls-from--high"),
+        ("job-name", "aerobot-falls"),
         ("chdir", &site.folder),
         ("partition", "day and night"),
         ("time", "1:30:00"),
@@ -206,7 +206,8 @@ fn shards_with_jobs_and_at_work_are_left_out() {
     assert_eq!(said, format!("{left_out}job 41: shards 1-2,6,8\n"));
     assert_eq!(option(&site.calls()[0], "array"), "1-2,6,8");
     let asked = fs::read_to_string(site.scratch.path("asked")).unwrap();
-    assert!(asked.contains("--name=aerobot-falls-from--high\n"));
+    assert!(asked.contains("--name=aerobot-falls\n"));
+    assert!(!asked.contains("SUSPENDED"));
 
     let all: String = (1..=8).map(|shard| format!("{shard} {tag}:0\n")).collect();
     site.scratch.file("queue", &all);
