@@ -170,6 +170,21 @@ impl Plan {
             .collect()
     }
 
+    /// Whether all values that a field may have are numbers that 64 bits of floating point hold.
+    #[must_use]
+    pub fn is_numeric(&self, field: usize) -> bool {
+        let Some(field) = self.fields.get(field) else {
+            return false;
+        };
+        match &field.source {
+            FieldSource::Steps(values, _) => values.iter().all(|value| is_number(value)),
+            FieldSource::Drawn(_, Distribution::Choice(values), _) => {
+                values.iter().all(|value| is_number(&value.0))
+            }
+            FieldSource::Drawn(..) => true,
+        }
+    }
+
     /// Some values of each field that a scene should accept: of steps and choices all, up to a hundred.
     pub(super) fn samples(&self) -> Vec<(&str, Vec<String>)> {
         let of_field = |field: &Field| match &field.source {
@@ -203,6 +218,13 @@ impl Plan {
             }
         }
     }
+}
+
+/// Whether a text is a number; a whole one above 2^53, such as a seed, would lose digits as one.
+fn is_number(text: &str) -> bool {
+    let is_whole = text.chars().all(|c| c.is_ascii_digit() || c == '-');
+    let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
+    value.is_some_and(|value| !is_whole || value.abs() <= (1_u64 << 53) as f64)
 }
 
 /// The number of runs; fields in steps get their strides.
