@@ -151,3 +151,146 @@ fn parquet_tables_are_the_csv_tables() {
     );
     assert!(units.contains(r#""fall_vz_m_s":"m/s""#), "{units}");
 }
+
+/// The indices of a field on a metric: first-order and total estimates with their intervals.
+fn indices(out: &str, field: &str, metric: &str) -> serde_json::Value {
+    let summary = fs::read_to_string(format!("{out}/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    let all = summary["sobol_indices"].as_array().unwrap().clone();
+    let is_it = |index: &serde_json::Value| index["field"] == field && index["metric"] == metric;
+    all.into_iter().find(is_it).unwrap()
+}
+
+fn assert_holds(estimate: &serde_json::Value, exact: f64, within: f64) {
+    let value = estimate["value"].as_f64().unwrap();
+    assert!((value - exact).abs() < within, "{estimate}, not {exact}");
+    let bound = |place: usize| estimate["interval_95"][place].as_f64().unwrap();
+    assert!(
+        bound(0) - 1e-9 <= exact && exact <= bound(1) + 1e-9,
+        "{estimate}, not {exact}"
+    );
+}
+
+/// The height after 2 s is z0 + 2 v0 and a constant: variances 20^2/12 and 2^2 12^2/12, nothing together, and no
+/// chance.
+#[test]
+fn a_fall_has_the_indices_of_its_closed_form() {
+    let vary = r#"vary: {
+        "entities.stone.Pose.position_m.2": Uniform(49_990, 50_010),
+        "entities.stone.Motion.velocity_m_s.2": Uniform(-3, 9),
+    },
+    metrics: {"height_z_m": Final(entity: "stone", channel: "z_m")}"#;
+    let of_place = 400.0 / (400.0 + 4.0 * 144.0);
+    let scratch = Scratch::folder();
+    let out = scratch.path("saltelli");
+    let file = falls(
+        &scratch,
+        &format!("plan: Saltelli, base_samples: 256, {vary}"),
+    );
+    let said = run(&file, &out);
+    assert!(said.contains("Sobol index"), "{said}");
+    let table = fs::read_to_string(format!("{out}/runs.csv")).unwrap();
+    assert_eq!(table.lines().count(), 1 + 256 * 5);
+    let (place, speed) = (
+        "entities.stone.Pose.position_m.2",
+        "entities.stone.Motion.velocity_m_s.2",
+    );
+    for (field, exact) in [
+        (place, of_place),
+        (speed, 1.0 - of_place),
+        ("run.seed", 0.0),
+    ] {
+        let found = indices(&out, field, "height_z_m");
+        assert_eq!(
+            (&found["samples"], &found["left_out"]),
+            (&256.into(), &0.into())
+        );
+        assert_holds(&found["first_order"], exact, 0.01);
+        assert_holds(&found["total"], exact, 0.01);
+    }
+    // The same from runs of chance, by ranks.
+    let out = scratch.path("chance");
+    let said = run(&falls(&scratch, &format!("runs: 400, {vary}")), &out);
+    assert!(said.contains("Sobol index"), "{said}");
+    for (field, exact) in [(place, of_place), (speed, 1.0 - of_place)] {
+        let found = indices(&out, field, "height_z_m");
+        assert_holds(&found["first_order"], exact, 0.15);
+        assert!(found["total"].is_null());
+    }
+    // Seeds that are set are no factor.
+    let out = scratch.path("set");
+    let set = format!("plan: Saltelli, runs: 40, set: {{\"run.seed\": 5}}, {vary}");
+    run(&falls(&scratch, &set), &out);
+    let table = fs::read_to_string(format!("{out}/runs.csv")).unwrap();
+    assert_eq!(
+        table.lines().filter(|line| line.contains(",5,")).count(),
+        40
+    );
+    assert!(
+        !fs::read_to_string(format!("{out}/summary.json"))
+            .unwrap()
+            .contains("run.seed\"")
+    );
+}
+
+/// Wind of 18 to 22 m/s and a gust of 1 m/s: variances 16/12 and 1, of which the gust's is chance. A tenth of the
+/// radii are below zero.
+#[test]
+fn chance_is_a_factor_and_base_samples_are_whole() {
+    let scratch = Scratch::folder();
+    scratch.file(
+        "gust.ron",
+        r#"(
+    name: "gust",
+    environment: (
+        wind: [
+            Uniform(velocity_m_s: (20, 0, 0)),
+            Gust(zonal: (decay_per_s: 0.05, marginal: Normal(standard_deviation_m_s: 1))),
+        ],
+    ),
+    entities: {
+        "leaf": (
+            Body: (mass_kg: 4, inertia: SolidSphere),
+            Sphere: (radius_m: 0.05),
+            Pose: (position_m: (0, 0, 56_000)),
+        ),
+    },
+    run: (duration_s: 0.1, output_every_s: 0.1, integrator: Auto()),
+)"#,
+    );
+    let file = scratch.file(
+        "gusts.ron",
+        r#"(name: "gusts", scene: "gust.ron", seed: 8, plan: Saltelli, base_samples: 256,
+    vary: {
+        "environment.wind.0.Uniform.velocity_m_s.0": Uniform(18, 22),
+        "entities.leaf.Sphere.radius_m": Uniform(-0.01, 0.09),
+    },
+    metrics: {"wind_m_s": Final(entity: "leaf", channel: "airspeed_m_s")})"#,
+    );
+    let out = scratch.path("out");
+    let said = run(&file, &out);
+    // Each base sample has two draws of the radius, each of which is refused in a tenth of them.
+    let wind = "environment.wind.0.Uniform.velocity_m_s.0";
+    let exact = 16.0 / 12.0 / (16.0 / 12.0 + 1.0);
+    for (field, exact) in [(wind, exact), ("run.seed", 1.0 - exact)] {
+        let found = indices(&out, field, "wind_m_s");
+        let left_out = found["left_out"].as_u64().unwrap();
+        assert!((35..65).contains(&left_out), "{left_out}");
+        assert_eq!(found["samples"].as_u64(), Some(256 - left_out));
+        assert_holds(&found["first_order"], exact, 0.2);
+        assert_holds(&found["total"], exact, 0.12);
+    }
+    assert!(said.contains("base samples lack wind_m_s"), "{said}");
+    let precise = aerobot(&[
+        "campaign",
+        "run",
+        &file,
+        "--out",
+        &out,
+        "--until-ci",
+        "1",
+        "--of",
+        "wind_m_s",
+    ]);
+    assert_eq!(precise.status.code(), Some(2));
+}

@@ -127,6 +127,11 @@ fn metric_place(campaign: &Campaign, work: &Work) -> Result<Option<usize>, Campa
     let Some(precision) = &work.precision else {
         return Ok(None);
     };
+    if campaign.plan.saltelli().is_some() {
+        let message =
+            "`--until-ci` takes runs as independent, and those of a Saltelli plan are not";
+        return Err(CampaignError::refused(message, "leave it out"));
+    }
     let metrics = &campaign.specification.metrics.0;
     let place = metrics
         .iter()

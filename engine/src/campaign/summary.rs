@@ -8,6 +8,8 @@ use serde::Serialize;
 use super::definition::Campaign;
 use super::record::Outcome;
 use super::running::Records;
+use super::sensitivity::{self, SobolIndex, sobol_indices};
+use super::sobol_indices::Estimate;
 use super::statistics::{bootstrap, mean_and_deviation, percentile, rank_correlation};
 
 /// Percentiles of every metric.
@@ -36,6 +38,8 @@ pub struct CampaignSummary {
     pub metrics: Vec<MetricSummary>,
     /// Spearman's rank correlation of each field that varies with each metric, where both are numbers.
     pub rank_correlations: Vec<RankCorrelation>,
+    /// Which part of each metric's variance each field makes.
+    pub sobol_indices: Vec<SobolIndex>,
     /// How the numbers are meant.
     pub notes: Vec<String>,
 }
@@ -56,7 +60,7 @@ pub struct Failure {
 pub struct MetricSummary {
     /// Its name.
     pub name: String,
-    /// Runs that have it.
+    /// Runs that have it, and count for all but the extremes: of a Saltelli plan those of A and B.
     pub runs: u64,
     /// Mean.
     pub mean: Option<f64>,
@@ -123,6 +127,9 @@ pub fn summarise(campaign: &Campaign, records: &Records) -> CampaignSummary {
         failures: failures(records),
         metrics: metrics.collect(),
         rank_correlations: rank_correlations(campaign, records),
+        sobol_indices: sobol_indices(campaign, records.len() as u64, &|index, place| {
+            records.get(&index)?.metrics.get(place).copied()?
+        }),
         notes: notes(campaign, records),
     }
 }
@@ -132,8 +139,8 @@ fn notes(campaign: &Campaign, records: &Records) -> Vec<String> {
         "intervals are of the percentile bootstrap and take runs as independent: of a Latin hypercube or \
          Sobol's sequence they are too wide as a rule, of a grid or a list they mean little"
             .to_owned(),
-        "Sobol indices are left out: no plan here is laid out for their estimators".to_owned(),
     ];
+    notes.extend(sensitivity::notes(campaign));
     if (records.len() as u64) < campaign.plan.runs {
         notes.push(
             "the campaign ended at a width of an interval that was looked at several times, which makes the \
@@ -193,7 +200,10 @@ fn of_metric(campaign: &Campaign, records: &Records, place: usize, name: &str) -
     };
     let mut values: Vec<(f64, u64)> = records.iter().filter_map(value_of).collect();
     values.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let sorted: Vec<f64> = values.iter().map(|(value, _)| *value).collect();
+    let independent = values
+        .iter()
+        .filter(|(_, index)| is_independent(campaign, *index));
+    let sorted: Vec<f64> = independent.map(|(value, _)| *value).collect();
     let moments = mean_and_deviation(&sorted);
     let seed = campaign.specification.seed;
     let intervals = bootstrap(&sorted, &PERCENTS, seed, place as u64);
@@ -221,11 +231,20 @@ fn of_metric(campaign: &Campaign, records: &Records, place: usize, name: &str) -
     }
 }
 
+/// Whether a run shares no input with those before: of a Saltelli plan most do.
+fn is_independent(campaign: &Campaign, index: u64) -> bool {
+    let layout = campaign.plan.saltelli();
+    layout.is_none_or(|layout| layout.is_independent(index))
+}
+
 fn rank_correlations(campaign: &Campaign, records: &Records) -> Vec<RankCorrelation> {
     let metrics = &campaign.specification.metrics.0;
     let fields = campaign.plan.field_names();
     let mut pairs = vec![Vec::new(); fields.len() * metrics.len()];
-    for (index, record) in records {
+    let independent = records
+        .iter()
+        .filter(|(index, _)| is_independent(campaign, **index));
+    for (index, record) in independent {
         let inputs = campaign.plan.inputs(*index).fields;
         for (field, (_, text)) in inputs.iter().enumerate() {
             let Some(input) = text.parse::<f64>().ok().filter(|value| value.is_finite()) else {
@@ -308,8 +327,41 @@ impl CampaignSummary {
                 );
             }
         }
+        for found in &self.sobol_indices {
+            if let Some(first) = &found.first_order {
+                let _ = write!(text, "  Sobol index {}", part(first));
+                if let Some(total) = &found.total {
+                    let _ = write!(text, ", in all {}", part(total));
+                }
+                let SobolIndex { field, metric, .. } = found;
+                let _ = writeln!(text, " of {field} on {metric}");
+            }
+        }
+        if let Some(most) = self.sobol_indices.iter().max_by_key(|found| found.left_out)
+            && most.left_out > 0
+        {
+            let all = most.samples + most.left_out;
+            let of = if most.total.is_some() {
+                "base samples"
+            } else {
+                "runs"
+            };
+            let SobolIndex {
+                left_out, metric, ..
+            } = most;
+            let _ = writeln!(
+                text,
+                "  {left_out} of {all} {of} lack {metric}, and are left out of its Sobol indices"
+            );
+        }
         text
     }
+}
+
+/// A part of a variance with its interval.
+fn part(estimate: &Estimate) -> String {
+    let [low, high] = estimate.interval_95;
+    format!("{:.3} ({low:.3} to {high:.3})", estimate.value)
 }
 
 #[cfg(test)]
