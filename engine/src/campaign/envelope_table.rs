@@ -3,10 +3,10 @@
 use super::CampaignError;
 use super::definition::Campaign;
 use super::envelopes::{PERCENTILES, percentiles_of};
+use super::finished_runs::FinishedRuns;
 use super::paired_table::PairedTable;
 use super::quantity::unit_symbol;
-use super::record::Outcome;
-use super::running::Records;
+use super::record::number;
 use crate::recording::parquet_table::{ColumnKind, ColumnSpec};
 
 /// Name of the tables of envelopes, without its ending.
@@ -16,7 +16,10 @@ pub const ENVELOPES: &str = "envelopes";
 ///
 /// # Errors
 /// What the file system refused.
-pub(super) fn write_envelopes(campaign: &Campaign, records: &Records) -> Result<(), CampaignError> {
+pub(super) fn write_envelopes(
+    campaign: &Campaign,
+    runs: &FinishedRuns,
+) -> Result<(), CampaignError> {
     let envelopes = &campaign.specification.envelopes.0;
     if envelopes.is_empty() {
         return Ok(());
@@ -25,18 +28,14 @@ pub(super) fn write_envelopes(campaign: &Campaign, records: &Records) -> Result<
         .map(|(name, envelope)| (name.clone(), unit_symbol(envelope.quantity().unit())))
         .collect();
     let mut table = PairedTable::create(&campaign.folder, ENVELOPES, &columns(), &units)?;
-    for (place, (name, envelope)) in envelopes.iter().enumerate() {
-        let done = || {
-            let records = records.values();
-            let done = records.filter(|record| record.outcome == Outcome::Done);
-            done.filter_map(|record| record.envelopes.get(place))
-        };
-        let times = done().map(Vec::len).max().unwrap_or(0);
-        for time in 0..times {
-            let mut values: Vec<f64> = done().filter_map(|run| run.get(time).copied()).collect();
-            table
-                .text(name)
-                .number(Some(time as f64 * envelope.every_s));
+    let bins: Vec<Bin> = (runs.times().iter().enumerate())
+        .flat_map(|(envelope, times)| (0..*times).map(move |time| Bin { envelope, time }))
+        .collect();
+    for bins in bins.chunks(bins_at_once(runs.done())) {
+        for (bin, mut values) in bins.iter().zip(values_of(campaign, runs, bins)?) {
+            let (name, envelope) = &envelopes[bin.envelope];
+            let time_s = bin.time as f64 * envelope.every_s;
+            table.text(name).number(Some(time_s));
             table.whole(values.len() as u64);
             for value in percentiles_of(&mut values) {
                 table.number(value);
@@ -45,6 +44,42 @@ pub(super) fn write_envelopes(campaign: &Campaign, records: &Records) -> Result<
         }
     }
     table.finish()
+}
+
+/// Memory for the values of the times that are folded at once, bytes: those of a million runs at 8 times.
+const MEMORY: u64 = 64 << 20;
+
+/// A time of an envelope, by their places.
+#[derive(Clone, Copy, Debug)]
+struct Bin {
+    envelope: usize,
+    time: usize,
+}
+
+/// Of how many times the values of so many runs are held at once.
+fn bins_at_once(runs: u64) -> usize {
+    usize::try_from(MEMORY / (8 * runs.max(1))).map_or(1, |bins| bins.max(1))
+}
+
+/// The values of all runs at each of some times that follow each other: one pass through the journals.
+fn values_of(
+    campaign: &Campaign,
+    runs: &FinishedRuns,
+    bins: &[Bin],
+) -> Result<Vec<Vec<f64>>, CampaignError> {
+    let done = usize::try_from(runs.done()).unwrap_or(0);
+    let mut values: Vec<Vec<f64>> = bins.iter().map(|_| Vec::with_capacity(done)).collect();
+    runs.each_done(campaign, &mut |line| {
+        let mut start = 0;
+        for bins in bins.chunk_by(|a, b| a.envelope == b.envelope) {
+            let texts = line.envelope(bins[0].envelope).skip(bins[0].time);
+            for (values, text) in values[start..start + bins.len()].iter_mut().zip(texts) {
+                values.extend(number(text));
+            }
+            start += bins.len();
+        }
+    })?;
+    Ok(values)
 }
 
 /// The unit of a percentile is that of the envelope, by its name.

@@ -8,10 +8,10 @@ use std::io;
 use super::CampaignError;
 use super::definition::Campaign;
 use super::envelope_table::write_envelopes;
+use super::finished_runs::FinishedRuns;
 use super::paired_table::write_whole;
 use super::record::Outcome;
 use super::run_table::write_runs;
-use super::running::Records;
 use super::summary::{CampaignSummary, summarise};
 use crate::plugin::Simulator;
 use crate::run_folder::Destination;
@@ -21,19 +21,19 @@ pub const SUMMARY_FILE: &str = "summary.json";
 /// Name of the folder of runs that are kept.
 pub const KEPT: &str = "kept";
 
-/// Writes everything, each file whole or not at all. The records are those of the first runs, without a gap.
+/// Writes everything, each file whole or not at all.
 ///
 /// # Errors
 /// What the file system refused; journals are not touched.
 pub fn write_results(
     simulator: &Simulator,
     campaign: &Campaign,
-    records: &Records,
+    runs: &FinishedRuns,
 ) -> Result<CampaignSummary, CampaignError> {
-    write_runs(campaign, records)?;
-    write_envelopes(campaign, records)?;
-    let summary = summarise(campaign, records);
-    keep(simulator, campaign, records, &summary)?;
+    write_runs(campaign, runs)?;
+    write_envelopes(campaign, runs)?;
+    let summary = summarise(campaign, runs);
+    keep(simulator, campaign, runs, &summary)?;
     let path = campaign.folder.join(SUMMARY_FILE);
     let text = serde_json::to_string_pretty(&summary)
         .map_err(|error| CampaignError::unwritten(&path, &error.into()))?;
@@ -42,17 +42,15 @@ pub fn write_results(
 }
 
 /// The runs of which everything is kept.
-fn kept(campaign: &Campaign, records: &Records, summary: &CampaignSummary) -> BTreeSet<u64> {
+fn kept(campaign: &Campaign, runs: &FinishedRuns, summary: &CampaignSummary) -> BTreeSet<u64> {
     let keep = &campaign.specification.keep;
     let mut wanted: BTreeSet<u64> = keep.runs.iter().copied().collect();
     if let Some(every) = keep.every {
-        wanted.extend(records.keys().filter(|index| *index % every == 0));
+        wanted.extend((0..runs.count()).step_by(usize::try_from(every).unwrap_or(usize::MAX)));
     }
     if keep.failures {
-        let failed = records
-            .values()
-            .filter(|record| record.outcome == Outcome::Stopped);
-        wanted.extend(failed.map(|record| record.index));
+        let is_stopped = |index: &u64| runs.outcome(*index) == Some(Outcome::Stopped);
+        wanted.extend((0..runs.count()).filter(is_stopped));
     }
     for metric in &summary.metrics {
         if keep.extremes_of.contains(&metric.name) {
@@ -62,8 +60,8 @@ fn kept(campaign: &Campaign, records: &Records, summary: &CampaignSummary) -> BT
     }
     // What was refused has nothing to keep.
     let was_run = |index: &u64| {
-        let record = records.get(index);
-        record.is_some_and(|record| record.outcome != Outcome::Refused)
+        let outcome = runs.outcome(*index);
+        outcome.is_some_and(|outcome| outcome != Outcome::Refused)
     };
     wanted.into_iter().filter(was_run).collect()
 }
@@ -72,10 +70,10 @@ fn kept(campaign: &Campaign, records: &Records, summary: &CampaignSummary) -> BT
 fn keep(
     simulator: &Simulator,
     campaign: &Campaign,
-    records: &Records,
+    runs: &FinishedRuns,
     summary: &CampaignSummary,
 ) -> Result<(), CampaignError> {
-    let wanted = kept(campaign, records, summary);
+    let wanted = kept(campaign, runs, summary);
     let name = |index: &u64| format!("run-{index:08}");
     let names: BTreeSet<String> = wanted.iter().map(name).collect();
     // An extreme of fewer runs, from an end at a precision, and what a kill left.
@@ -101,7 +99,7 @@ fn keep(
             overwrite: true,
         };
         let (_, repeated) = campaign.replay(simulator, index, &destination, &mut |_| {})?;
-        let renamed = match records.get(&index) == Some(&repeated) {
+        let renamed = match runs.record(campaign, index)? == repeated {
             true => fs::rename(&part, &folder),
             // As on a disk that is full.
             false => Err(io::Error::other(

@@ -3,9 +3,10 @@
 
 use super::CampaignError;
 use super::definition::Campaign;
+use super::finished_runs::FinishedRuns;
 use super::paired_table::PairedTable;
 use super::quantity::{unit_of, unit_symbol};
-use super::running::Records;
+use super::record::Outcome;
 use crate::recording::parquet_table::{ColumnKind, ColumnSpec};
 use crate::scene::source::{FieldPath, Segment};
 
@@ -16,18 +17,23 @@ pub const RUNS: &str = "runs";
 ///
 /// # Errors
 /// What the file system refused.
-pub(super) fn write_runs(campaign: &Campaign, records: &Records) -> Result<(), CampaignError> {
+pub(super) fn write_runs(campaign: &Campaign, runs: &FinishedRuns) -> Result<(), CampaignError> {
     let mut table = PairedTable::create(&campaign.folder, RUNS, &columns(campaign), &[])?;
-    for (index, record) in records {
-        let inputs = campaign.plan.inputs(*index);
-        table.whole(*index).given(&inputs.seed);
+    for index in 0..runs.count() {
+        let inputs = campaign.plan.inputs(index);
+        table.whole(index).given(&inputs.seed);
         for (_, value) in &inputs.fields {
             table.given(value);
         }
-        table.text(record.outcome.word()).text(&record.reason);
-        table.number(Some(record.simulated_s));
-        for value in &record.metrics {
-            table.number(*value);
+        let outcome = runs.outcome(index).unwrap_or(Outcome::Refused);
+        let reason = match outcome {
+            Outcome::Done => String::new(),
+            _ => runs.record(campaign, index)?.reason,
+        };
+        table.text(outcome.word()).text(&reason);
+        table.number(runs.simulated_s(index));
+        for place in 0..campaign.counts().0 {
+            table.number(runs.metric(index, place));
         }
         table.end_row()?;
     }

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::definition::Campaign;
+use super::finished_runs::FinishedRuns;
 use super::plan::RUN_SEED;
 use super::saltelli::Saltelli;
 use super::sobol_indices::{Estimate, FEWEST_RUNS, ranked_index, saltelli_indices};
@@ -32,33 +33,25 @@ pub struct SobolIndex {
 const SALTELLI: &str = "Saltelli 2010, Jansen 1999";
 const RANKS: &str = "ranks, Gamboa 2022";
 
-/// The value of a metric (by its place) of a run, if it has one.
-pub(super) type MetricOf<'a> = &'a dyn Fn(u64, usize) -> Option<f64>;
-
-/// The indices of every field and metric over the first so many runs.
-pub(super) fn sobol_indices(campaign: &Campaign, runs: u64, metric: MetricOf) -> Vec<SobolIndex> {
+/// The indices of every field and metric.
+pub(super) fn sobol_indices(campaign: &Campaign, runs: &FinishedRuns) -> Vec<SobolIndex> {
     match campaign.plan.saltelli() {
-        Some(layout) => of_base_samples(campaign, layout, runs, metric),
-        None if campaign.plan.is_independent() => of_given_runs(campaign, runs, metric),
+        Some(layout) => of_base_samples(campaign, layout, runs),
+        None if campaign.plan.is_independent() => of_given_runs(campaign, runs),
         None => Vec::new(),
     }
 }
 
-fn of_base_samples(
-    campaign: &Campaign,
-    layout: Saltelli,
-    runs: u64,
-    metric: MetricOf,
-) -> Vec<SobolIndex> {
+fn of_base_samples(campaign: &Campaign, layout: Saltelli, runs: &FinishedRuns) -> Vec<SobolIndex> {
     let mut fields = campaign.plan.field_names();
     fields.extend(layout.chance.then_some(RUN_SEED));
     let (seed, each) = (campaign.specification.seed, layout.runs_each());
-    let base_samples = runs / each;
+    let base_samples = runs.count() / each;
     let mut found = Vec::new();
     for (place, (name, _)) in campaign.specification.metrics.0.iter().enumerate() {
         let mut columns = vec![Vec::new(); each as usize];
         for base in 0..base_samples {
-            let values = (0..each).map(|block| metric(base * each + block, place));
+            let values = (0..each).map(|block| runs.metric(base * each + block, place));
             let Some(values) = values.collect::<Option<Vec<f64>>>() else {
                 continue;
             };
@@ -84,15 +77,15 @@ fn of_base_samples(
     found
 }
 
-fn of_given_runs(campaign: &Campaign, runs: u64, metric: MetricOf) -> Vec<SobolIndex> {
+fn of_given_runs(campaign: &Campaign, runs: &FinishedRuns) -> Vec<SobolIndex> {
     let metrics = &campaign.specification.metrics.0;
     let mut found = Vec::new();
     for (number, field) in campaign.plan.field_names().into_iter().enumerate() {
-        let inputs = input_column(campaign, number, runs);
+        let inputs = input_column(campaign, number, runs.count());
         for (place, (name, _)) in metrics.iter().enumerate() {
-            let pairs: Vec<(f64, f64)> = (0..runs)
+            let pairs: Vec<(f64, f64)> = (0..runs.count())
                 .zip(&inputs)
-                .filter_map(|(index, input)| Some((*input, metric(index, place)?)))
+                .filter_map(|(index, input)| Some((*input, runs.metric(index, place)?)))
                 .collect();
             let stream = (number * metrics.len() + place) as u64;
             found.push(SobolIndex {
@@ -102,7 +95,7 @@ fn of_given_runs(campaign: &Campaign, runs: u64, metric: MetricOf) -> Vec<SobolI
                 total: None,
                 estimator: RANKS,
                 samples: pairs.len() as u64,
-                left_out: runs - pairs.len() as u64,
+                left_out: runs.count() - pairs.len() as u64,
             });
         }
     }

@@ -1,14 +1,12 @@
 //! `summary.json`: what the runs of a campaign have in common.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use serde::Serialize;
 
 use super::definition::Campaign;
-use super::record::Outcome;
-use super::running::Records;
-use super::sensitivity::{self, SobolIndex, sobol_indices};
+use super::finished_runs::FinishedRuns;
+use super::sensitivity::{self, SobolIndex, input_column, sobol_indices};
 use super::sobol_indices::Estimate;
 use super::statistics::{bootstrap, mean_and_deviation, percentile, rank_correlation};
 
@@ -102,46 +100,35 @@ pub struct RankCorrelation {
     pub runs: u64,
 }
 
-/// Folds the records, in the order of their indices.
+/// Folds the runs, in the order of their indices.
 #[must_use]
-pub fn summarise(campaign: &Campaign, records: &Records) -> CampaignSummary {
-    let names = campaign
-        .specification
-        .metrics
-        .0
-        .iter()
-        .map(|(name, _)| name);
-    let metrics = names.enumerate();
-    let metrics = metrics.map(|(place, name)| of_metric(campaign, records, place, name));
-    let done = records
-        .values()
-        .filter(|record| record.outcome == Outcome::Done);
+pub fn summarise(campaign: &Campaign, runs: &FinishedRuns) -> CampaignSummary {
+    let metrics = campaign.specification.metrics.0.iter().enumerate();
+    let metrics = metrics.map(|(place, (name, _))| of_metric(campaign, runs, place, name));
     CampaignSummary {
         version: campaign.manifest.version.clone(),
         campaign: campaign.specification.name.clone(),
         fingerprint: campaign.manifest.fingerprint.clone(),
         seed: campaign.specification.seed,
         runs_planned: campaign.plan.runs,
-        runs: records.len() as u64,
-        runs_done: done.count() as u64,
-        failures: failures(records),
+        runs: runs.count(),
+        runs_done: runs.done(),
+        failures: runs.failures(),
         metrics: metrics.collect(),
-        rank_correlations: rank_correlations(campaign, records),
-        sobol_indices: sobol_indices(campaign, records.len() as u64, &|index, place| {
-            records.get(&index)?.metrics.get(place).copied()?
-        }),
-        notes: notes(campaign, records),
+        rank_correlations: rank_correlations(campaign, runs),
+        sobol_indices: sobol_indices(campaign, runs),
+        notes: notes(campaign, runs),
     }
 }
 
-fn notes(campaign: &Campaign, records: &Records) -> Vec<String> {
+fn notes(campaign: &Campaign, runs: &FinishedRuns) -> Vec<String> {
     let mut notes = vec![
         "intervals are of the percentile bootstrap and take runs as independent: of a Latin hypercube or \
          Sobol's sequence they are too wide as a rule, of a grid or a list they mean little"
             .to_owned(),
     ];
     notes.extend(sensitivity::notes(campaign));
-    if (records.len() as u64) < campaign.plan.runs {
+    if runs.count() < campaign.plan.runs {
         notes.push(
             "the campaign ended at a width of an interval that was looked at several times, which makes the \
              interval cover somewhat less than it says"
@@ -151,31 +138,19 @@ fn notes(campaign: &Campaign, records: &Records) -> Vec<String> {
     notes
 }
 
-fn failures(records: &Records) -> Vec<Failure> {
-    let mut found: BTreeMap<String, (u64, u64)> = BTreeMap::new();
-    for record in records
-        .values()
-        .filter(|record| record.outcome != Outcome::Done)
-    {
-        let reason = format!(
-            "{}: {}",
-            record.outcome.word(),
-            without_numbers(&record.reason)
-        );
-        found.entry(reason).or_insert((0, record.index)).0 += 1;
+impl Failure {
+    /// Of so many runs, the first of which has this index.
+    pub(super) fn new(reason: &str, (runs, first_run): (u64, u64)) -> Self {
+        Self {
+            reason: reason.to_owned(),
+            runs,
+            first_run,
+        }
     }
-    let failure = |(reason, (runs, first_run))| Failure {
-        reason,
-        runs,
-        first_run,
-    };
-    let mut found: Vec<Failure> = found.into_iter().map(failure).collect();
-    found.sort_by_key(|failure| std::cmp::Reverse(failure.runs));
-    found
 }
 
 /// A text with `#` in the place of each number.
-fn without_numbers(text: &str) -> String {
+pub(super) fn without_numbers(text: &str) -> String {
     let mut found = String::new();
     let mut in_number = false;
     let mut before = ' ';
@@ -194,11 +169,10 @@ fn without_numbers(text: &str) -> String {
     found
 }
 
-fn of_metric(campaign: &Campaign, records: &Records, place: usize, name: &str) -> MetricSummary {
-    let value_of = |(index, record): (&u64, &super::record::Record)| {
-        Some((record.metrics.get(place).copied()??, *index))
-    };
-    let mut values: Vec<(f64, u64)> = records.iter().filter_map(value_of).collect();
+fn of_metric(campaign: &Campaign, runs: &FinishedRuns, place: usize, name: &str) -> MetricSummary {
+    let mut values: Vec<(f64, u64)> = (0..runs.count())
+        .filter_map(|index| Some((runs.metric(index, place)?, index)))
+        .collect();
     values.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let independent = values
         .iter()
@@ -237,38 +211,30 @@ fn is_independent(campaign: &Campaign, index: u64) -> bool {
     layout.is_none_or(|layout| layout.is_independent(index))
 }
 
-fn rank_correlations(campaign: &Campaign, records: &Records) -> Vec<RankCorrelation> {
-    let metrics = &campaign.specification.metrics.0;
-    let fields = campaign.plan.field_names();
-    let mut pairs = vec![Vec::new(); fields.len() * metrics.len()];
-    let independent = records
-        .iter()
-        .filter(|(index, _)| is_independent(campaign, **index));
-    for (index, record) in independent {
-        let inputs = campaign.plan.inputs(*index).fields;
-        for (field, (_, text)) in inputs.iter().enumerate() {
-            let Some(input) = text.parse::<f64>().ok().filter(|value| value.is_finite()) else {
-                continue;
-            };
-            for (metric, value) in record.metrics.iter().enumerate() {
-                let pairs = pairs.get_mut(field * metrics.len() + metric);
-                if let (Some(pairs), Some(value)) = (pairs, value) {
-                    pairs.push((input, *value));
-                }
+fn rank_correlations(campaign: &Campaign, runs: &FinishedRuns) -> Vec<RankCorrelation> {
+    let mut found = Vec::new();
+    for (number, field) in campaign.plan.field_names().into_iter().enumerate() {
+        if !campaign.plan.is_numeric(number) {
+            continue;
+        }
+        let inputs = input_column(campaign, number, runs.count());
+        for (place, (metric, _)) in campaign.specification.metrics.0.iter().enumerate() {
+            let pairs: Vec<(f64, f64)> = (0..runs.count())
+                .zip(&inputs)
+                .filter(|(index, _)| is_independent(campaign, *index))
+                .filter_map(|(index, input)| Some((*input, runs.metric(index, place)?)))
+                .collect();
+            if !pairs.is_empty() {
+                found.push(RankCorrelation {
+                    field: field.to_owned(),
+                    metric: metric.clone(),
+                    spearman: rank_correlation(&pairs),
+                    runs: pairs.len() as u64,
+                });
             }
         }
     }
-    let both = fields
-        .iter()
-        .flat_map(|field| metrics.iter().map(move |metric| (field, metric)));
-    let both = both.zip(pairs).filter(|(_, pairs)| !pairs.is_empty());
-    both.map(|((field, (metric, _)), pairs)| RankCorrelation {
-        field: (*field).to_owned(),
-        metric: metric.clone(),
-        spearman: rank_correlation(&pairs),
-        runs: pairs.len() as u64,
-    })
-    .collect()
+    found
 }
 
 impl CampaignSummary {
