@@ -161,8 +161,9 @@ fn run(simulator: &Simulator, arguments: &RunCampaignArguments) -> Done {
     let runs = FinishedRuns::read(&campaign, runs)?;
     let summary = write_results(simulator, &campaign, &runs)?;
     if !arguments.quiet {
-        say(summary.describe().trim_end());
-        say(format_args!("results in `{}`{rate}", folder.display()));
+        let folder = folder.display().to_string();
+        say(summary.describe(&folder).trim_end());
+        say(format_args!("results in `{folder}`{rate}"));
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -287,8 +288,9 @@ fn merge(simulator: &Simulator, arguments: &MergeArguments) -> Done {
     let runs = merged(&campaign)?;
     let summary = write_results(simulator, &campaign, &runs)?;
     if !arguments.quiet {
-        say(summary.describe().trim_end());
-        say(format_args!("results in `{}`", arguments.folder.display()));
+        let folder = arguments.folder.display().to_string();
+        say(summary.describe(&folder).trim_end());
+        say(format_args!("results in `{folder}`"));
     }
     Ok(ExitCode::SUCCESS)
 }

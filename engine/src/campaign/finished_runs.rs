@@ -127,8 +127,9 @@ impl FinishedRuns {
     }
 
     /// The runs that failed by reason, the most frequent first.
-    pub(super) fn failures(&self) -> Vec<Failure> {
-        let failure = |(reason, counts): (&String, &(u64, u64))| Failure::new(reason, *counts);
+    pub(super) fn failures(&self, campaign: &Campaign) -> Vec<Failure> {
+        let failure =
+            |(reason, counts): (&String, &(u64, u64))| Failure::new(campaign, reason, *counts);
         let mut found: Vec<Failure> = self.failures.iter().map(failure).collect();
         found.sort_by_key(|failure| std::cmp::Reverse(failure.runs));
         found

@@ -51,7 +51,14 @@ pub struct Failure {
     pub runs: u64,
     /// Index of the first of them.
     pub first_run: u64,
+    /// Its inputs, as `--set` has them.
+    pub first_inputs: Vec<String>,
+    /// The command that repeats it, with `DIR` for the folder of the campaign.
+    pub replay: String,
 }
+
+/// What stands for the folder of the campaign in a summary, which is the same wherever that is.
+const FOLDER: &str = "DIR";
 
 /// A metric over all runs that have it, in its unit.
 #[derive(Clone, Debug, Serialize)]
@@ -60,6 +67,8 @@ pub struct MetricSummary {
     pub name: String,
     /// Runs that have it, and count for all but the extremes: of a Saltelli plan those of A and B.
     pub runs: u64,
+    /// Runs that got to their end without it: what `FirstTime` waits for never was.
+    pub done_without: u64,
     /// Mean.
     pub mean: Option<f64>,
     /// 95 % interval of the mean by the bootstrap.
@@ -113,7 +122,7 @@ pub fn summarise(campaign: &Campaign, runs: &FinishedRuns) -> CampaignSummary {
         runs_planned: campaign.plan.runs,
         runs: runs.count(),
         runs_done: runs.done(),
-        failures: runs.failures(),
+        failures: runs.failures(campaign),
         metrics: metrics.collect(),
         rank_correlations: rank_correlations(campaign, runs),
         sobol_indices: sobol_indices(campaign, runs),
@@ -140,11 +149,13 @@ fn notes(campaign: &Campaign, runs: &FinishedRuns) -> Vec<String> {
 
 impl Failure {
     /// Of so many runs, the first of which has this index.
-    pub(super) fn new(reason: &str, (runs, first_run): (u64, u64)) -> Self {
+    pub(super) fn new(campaign: &Campaign, reason: &str, (runs, first_run): (u64, u64)) -> Self {
         Self {
             reason: reason.to_owned(),
             runs,
             first_run,
+            first_inputs: campaign.plan.inputs(first_run).overrides(),
+            replay: format!("aerobot campaign replay {FOLDER} --run {first_run}"),
         }
     }
 }
@@ -174,6 +185,7 @@ fn of_metric(campaign: &Campaign, runs: &FinishedRuns, place: usize, name: &str)
         .filter_map(|index| Some((runs.metric(index, place)?, index)))
         .collect();
     values.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let missing = runs.done() - values.len() as u64;
     let independent = values
         .iter()
         .filter(|(_, index)| is_independent(campaign, *index));
@@ -193,6 +205,7 @@ fn of_metric(campaign: &Campaign, runs: &FinishedRuns, place: usize, name: &str)
     MetricSummary {
         name: name.to_owned(),
         runs: sorted.len() as u64,
+        done_without: missing,
         mean: moments
             .map(|(mean, _)| mean)
             .or_else(|| sorted.first().copied()),
@@ -238,20 +251,19 @@ fn rank_correlations(campaign: &Campaign, runs: &FinishedRuns) -> Vec<RankCorrel
 }
 
 impl CampaignSummary {
-    /// A few lines for the terminal.
+    /// A few lines for the terminal; `folder` is that of the campaign.
     #[must_use]
-    pub fn describe(&self) -> String {
+    pub fn describe(&self, folder: &str) -> String {
         let mut text = format!(
             "{}: {} of {} runs, {} done\n",
             self.campaign, self.runs, self.runs_planned, self.runs_done
         );
         for failure in self.failures.iter().take(10) {
-            let Failure {
-                reason,
-                runs,
-                first_run,
-            } = failure;
-            let _ = writeln!(text, "  {runs} failed, run {first_run} first: {reason}");
+            let Failure { reason, runs, .. } = failure;
+            let _ = writeln!(text, "  {runs} failed: {reason}");
+            let replay = failure.replay.replace(FOLDER, folder);
+            let _ = writeln!(text, "    first with {}", failure.first_inputs.join(" "));
+            let _ = writeln!(text, "    `{replay}`");
         }
         let width = self
             .metrics
@@ -282,7 +294,11 @@ impl CampaignSummary {
                     );
                 }
             }
-            let _ = writeln!(text, ", from {} to {}", shown(least), shown(most));
+            let _ = write!(text, ", from {} to {}", shown(least), shown(most));
+            if metric.done_without > 0 {
+                let _ = write!(text, "; {} runs were done without", metric.done_without);
+            }
+            text.push('\n');
         }
         for found in &self.rank_correlations {
             if let Some(spearman) = found.spearman {
