@@ -108,7 +108,7 @@ fn parquet_tables_are_the_csv_tables() {
     },
     metrics: {
         "height_z_m": Final(entity: "stone", channel: "z_m"),
-        "fast_s": FirstTime(entity: "stone", channel: "vz_m_s", below: Some(-10)),
+        "fast_s": FirstTime(entity: "stone", channel: "vz_m_s", below: -10),
     },
     envelopes: {"fall_vz_m_s": (entity: "stone", channel: "vz_m_s", every_s: 0.1)},
 "#,
@@ -250,9 +250,10 @@ fn chance_is_a_factor_and_base_samples_are_whole() {
     ),
     entities: {
         "leaf": (
-            Body: (mass_kg: 4, inertia: SolidSphere),
+            Body: (mass_kg: 400, inertia: SolidSphere),
             Sphere: (radius_m: 0.05),
             Pose: (position_m: (0, 0, 56_000)),
+            Drag: Constant(coefficient: 0.47),
         ),
     },
     run: (duration_s: 0.1, output_every_s: 0.1, integrator: Auto()),
@@ -262,7 +263,7 @@ fn chance_is_a_factor_and_base_samples_are_whole() {
         "gusts.ron",
         r#"(name: "gusts", scene: "gust.ron", seed: 8, plan: Saltelli, base_samples: 256,
     vary: {
-        "environment.wind.0.Uniform.velocity_m_s.0": Uniform(18, 22),
+        "environment.wind.0.velocity_m_s.0": Uniform(18, 22),
         "entities.leaf.Sphere.radius_m": Uniform(-0.01, 0.09),
     },
     metrics: {"wind_m_s": Final(entity: "leaf", channel: "airspeed_m_s")})"#,
@@ -270,7 +271,7 @@ fn chance_is_a_factor_and_base_samples_are_whole() {
     let out = scratch.path("out");
     let said = run(&file, &out);
     // Each base sample has two draws of the radius, each of which is refused in a tenth of them.
-    let wind = "environment.wind.0.Uniform.velocity_m_s.0";
+    let wind = "environment.wind.0.velocity_m_s.0";
     let exact = 16.0 / 12.0 / (16.0 / 12.0 + 1.0);
     for (field, exact) in [(wind, exact), ("run.seed", 1.0 - exact)] {
         let found = indices(&out, field, "wind_m_s");
@@ -293,4 +294,137 @@ fn chance_is_a_factor_and_base_samples_are_whole() {
         "wind_m_s",
     ]);
     assert_eq!(precise.status.code(), Some(2));
+}
+
+/// Some radii are below zero, and some falls get into a gravity that no step can follow: what failed is told by its
+/// reason, with the inputs of the first run and the command that repeats it.
+#[test]
+fn failures_are_told_by_reason_with_a_way_to_see_them_again() {
+    let scratch = Scratch::folder();
+    let file = falls(
+        &scratch,
+        r#"
+    runs: 40,
+    set: {"run.integrator": Fixed(step_s: 0.5)},
+    vary: {
+        "entities.stone.Sphere.radius_m": Uniform(-0.05, 0.1),
+        "environment.gravity": Choice([Constant(8.87), Constant(1e200)]),
+    },
+    metrics: {
+        "height_z_m": Final(entity: "stone", channel: "z_m"),
+        "fast_s": FirstTime(entity: "stone", channel: "vz_m_s", below: -10),
+        "never_s": FirstTime(entity: "stone", channel: "vz_m_s", above: 1),
+    },
+"#,
+    );
+    let out = scratch.path("out");
+    let said = run(&file, &out);
+    let summary = fs::read_to_string(format!("{out}/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    let failures = summary["failures"].as_array().unwrap();
+    let table = fs::read_to_string(format!("{out}/runs.csv")).unwrap();
+    let rows: Vec<Vec<String>> = table.lines().skip(1).map(cells).collect();
+    let of = |outcome: &str| rows.iter().filter(|row| row[4] == outcome).count() as u64;
+    assert!(
+        of("refused") > 5 && of("stopped") > 5 && of("done") > 5,
+        "{table}"
+    );
+    for outcome in ["refused", "stopped"] {
+        let is_it =
+            |failure: &&serde_json::Value| failure["reason"].as_str().unwrap().starts_with(outcome);
+        let found: Vec<_> = failures.iter().filter(is_it).collect();
+        let runs: u64 = found.iter().map(|of| of["runs"].as_u64().unwrap()).sum();
+        assert_eq!(runs, of(outcome));
+        let first = found[0]["first_run"].as_u64().unwrap() as usize;
+        let row = &rows[first];
+        assert_eq!(row[4], outcome);
+        assert!(row[7..].iter().all(String::is_empty), "{row:?}");
+        assert_eq!(
+            found[0]["first_inputs"],
+            serde_json::json!([
+                format!("entities.stone.Sphere.radius_m={}", row[2]),
+                format!("environment.gravity={}", row[3]),
+                format!("run.seed={}", row[1]),
+            ])
+        );
+        assert_eq!(
+            found[0]["replay"],
+            format!("aerobot campaign replay DIR --run {first}")
+        );
+        let command = format!("aerobot campaign replay {out} --run {first}");
+        assert!(said.contains(&command), "{said}");
+        let replayed = aerobot(&["campaign", "replay", &out, "--run", &first.to_string()]);
+        let expected = if outcome == "refused" { 2 } else { 3 };
+        assert_eq!(
+            replayed.status.code(),
+            Some(expected),
+            "{}",
+            text(&replayed.stderr)
+        );
+    }
+    // What never was is told apart from what failed.
+    let never = &summary["metrics"][2];
+    assert_eq!(
+        (&never["runs"], &never["done_without"]),
+        (&0.into(), &of("done").into())
+    );
+    assert_eq!(summary["metrics"][1]["done_without"], 0);
+}
+
+/// The CSV file of a gust goes with the folder: what it was made of may be gone, and the folder be elsewhere.
+#[test]
+fn a_folder_has_the_table_of_a_gust() {
+    let scratch = Scratch::folder();
+    let speeds: String = (0..400)
+        .map(|k| format!("{}\n", f64::from(k) * 0.01))
+        .collect();
+    scratch.file("there/speeds.csv", &format!("speed_m_s\n{speeds}"));
+    scratch.file(
+        "there/gust.ron",
+        r#"(
+    name: "gust",
+    environment: (
+        wind: [
+            Gust(zonal: (decay_per_s: 0.05, marginal: Empirical(file: "speeds.csv"))),
+        ],
+    ),
+    entities: {
+        "leaf": (
+            Body: (mass_kg: 400, inertia: SolidSphere),
+            Sphere: (radius_m: 0.05),
+            Pose: (position_m: (0, 0, 56_000)),
+            Drag: Constant(coefficient: 0.47),
+        ),
+    },
+    run: (duration_s: 0.1, output_every_s: 0.1, integrator: Auto()),
+)"#,
+    );
+    let file = scratch.file(
+        "there/gusts.ron",
+        r#"(name: "gusts", scene: "gust.ron", runs: 12,
+    vary: {"entities.leaf.Body.mass_kg": Uniform(300, 500)},
+    metrics: {"wind_m_s": Final(entity: "leaf", channel: "airspeed_m_s")})"#,
+    );
+    let (plan, moved, whole) = (
+        scratch.path("plan"),
+        scratch.path("moved"),
+        scratch.path("whole"),
+    );
+    run(&file, &whole);
+    let planned = aerobot(&["campaign", "plan", &file, "--out", &plan, "--shards", "2"]);
+    assert_eq!(planned.status.code(), Some(0), "{}", text(&planned.stderr));
+    fs::remove_dir_all(scratch.path("there")).unwrap();
+    fs::rename(&plan, &moved).unwrap();
+    for shard in ["1/2", "2/2"] {
+        let output = aerobot(&["campaign", "run", &moved, "--shard", shard]);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    }
+    let merged = aerobot(&["campaign", "merge", &moved]);
+    assert_eq!(merged.status.code(), Some(0), "{}", text(&merged.stderr));
+    let bytes = |folder: &str, name: &str| fs::read(format!("{folder}/{name}")).unwrap();
+    for name in ["runs.csv", "runs.parquet", "summary.json"] {
+        assert_eq!(bytes(&whole, name), bytes(&moved, name), "{name}");
+    }
+    let table = fs::read_to_string(format!("{moved}/runs.csv")).unwrap();
+    assert_eq!(table.matches(",done,").count(), 12, "{table}");
 }
