@@ -77,7 +77,9 @@ fn results(folder: &str) -> BTreeMap<String, Vec<u8>> {
         assert!(!text.contains("NaN") && !name.ends_with(".part"), "{name}");
     }
     let has = |start: &str| found.keys().any(|name| name.starts_with(start));
-    assert!(has("/runs.csv") && has("/envelopes.csv") && has("/kept/run-"));
+    assert!(
+        has("/runs.csv") && has("/runs.parquet") && has("/envelopes.parquet") && has("/kept/run-")
+    );
     found
 }
 

@@ -7,11 +7,12 @@ use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
 
 use aerobot_engine::campaign::definition::Campaign;
-use aerobot_engine::campaign::journal::{read_journal, wait_for};
+use aerobot_engine::campaign::finished_runs::FinishedRuns;
+use aerobot_engine::campaign::journal::{find_record, wait_for};
 use aerobot_engine::campaign::preparation::prepare;
 use aerobot_engine::campaign::record::Record;
 use aerobot_engine::campaign::results::write_results;
-use aerobot_engine::campaign::running::{Precision, Records, Work, merged, run_shard};
+use aerobot_engine::campaign::running::{Precision, Work, merged, run_shard};
 use aerobot_engine::campaign::shards::Shard;
 use aerobot_engine::campaign::{CampaignError, manifest::MANIFEST};
 use aerobot_engine::plugin::Simulator;
@@ -161,21 +162,20 @@ fn run(simulator: &Simulator, arguments: &RunCampaignArguments) -> Done {
         &shard.part_file(&folder),
         Duration::from_secs(arguments.wait),
     )?;
-    let (records, rate) = run_with_bar(simulator, &campaign, shard, &work, arguments.quiet)?;
+    let (runs, rate) = run_with_bar(simulator, &campaign, shard, &work, arguments.quiet)?;
     if arguments.shard.is_some() {
         if !arguments.quiet {
             let Shard { number, count } = shard;
-            say(format_args!(
-                "shard {number}/{count}: {} runs{rate}",
-                records.len()
-            ));
+            say(format_args!("shard {number}/{count}: {runs} runs{rate}"));
         }
         return Ok(ExitCode::SUCCESS);
     }
-    let summary = write_results(simulator, &campaign, &records)?;
+    let runs = FinishedRuns::read(&campaign, runs)?;
+    let summary = write_results(simulator, &campaign, &runs)?;
     if !arguments.quiet {
-        say(summary.describe().trim_end());
-        say(format_args!("results in `{}`{rate}", folder.display()));
+        let folder = folder.display().to_string();
+        say(summary.describe(&folder).trim_end());
+        say(format_args!("results in `{folder}`{rate}"));
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -214,14 +214,14 @@ fn folder_of(
     Ok(folder)
 }
 
-/// Runs a shard with a bar on a terminal; gives its records and how fast they came, in words.
+/// Runs a shard with a bar on a terminal; gives how many of its runs count, and how fast they came, in words.
 fn run_with_bar(
     simulator: &Simulator,
     campaign: &Campaign,
     shard: Shard,
     work: &Work,
     quiet: bool,
-) -> Result<(Records, String), CampaignError> {
+) -> Result<(u64, String), CampaignError> {
     let bar = if quiet || !std::io::stderr().is_terminal() {
         ProgressBar::hidden()
     } else {
@@ -297,11 +297,12 @@ fn status(folder: &Path) -> Done {
 
 fn merge(simulator: &Simulator, arguments: &MergeArguments) -> Done {
     let campaign = Campaign::open(&arguments.folder)?;
-    let records = merged(&campaign)?;
-    let summary = write_results(simulator, &campaign, &records)?;
+    let runs = merged(&campaign)?;
+    let summary = write_results(simulator, &campaign, &runs)?;
     if !arguments.quiet {
-        say(summary.describe().trim_end());
-        say(format_args!("results in `{}`", arguments.folder.display()));
+        let folder = arguments.folder.display().to_string();
+        say(summary.describe(&folder).trim_end());
+        say(format_args!("results in `{folder}`"));
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -355,9 +356,5 @@ fn recorded(campaign: &Campaign, index: u64) -> Result<Option<Record>, CampaignE
         number: index % count + 1,
         count,
     };
-    let finished = read_journal(campaign, &shard.finished_file(&campaign.folder))?.remove(&index);
-    match finished {
-        Some(record) => Ok(Some(record)),
-        None => Ok(read_journal(campaign, &shard.part_file(&campaign.folder))?.remove(&index)),
-    }
+    find_record(campaign, &shard.file(&campaign.folder), index)
 }

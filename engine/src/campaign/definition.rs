@@ -77,6 +77,16 @@ impl Campaign {
         }
     }
 
+    /// How many metrics and envelopes there are.
+    #[must_use]
+    pub fn counts(&self) -> (usize, usize) {
+        let specification = &self.specification;
+        (
+            specification.metrics.0.len(),
+            specification.envelopes.0.len(),
+        )
+    }
+
     /// Folder of the inputs, in which tables of the scene are.
     #[must_use]
     pub fn input_folder(&self) -> PathBuf {

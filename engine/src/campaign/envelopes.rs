@@ -6,11 +6,9 @@
 use aerobot_components::scene_component::FieldReport;
 use serde::Deserialize;
 
-use super::comma_separated::quoted;
 use super::quantity::Quantity;
 use super::statistics::percentile;
 use crate::recording::frame::Frame;
-use crate::recording::number::number_text;
 
 /// Percentiles of an envelope.
 pub const PERCENTILES: [f64; 7] = [0.0, 5.0, 25.0, 50.0, 75.0, 95.0, 100.0];
@@ -109,32 +107,11 @@ impl EnvelopeSampler {
     }
 }
 
-/// Percentiles at each time over the runs that got there, as CSV: `envelopes` are names and periods in s,
-/// `runs` the values of each run for each envelope.
+/// The [`PERCENTILES`] of the values of all runs at a time, which are sorted for it.
 #[must_use]
-pub fn envelope_table(envelopes: &[(String, f64)], runs: &[&[Vec<f64>]]) -> String {
-    let mut text = "envelope,time_s,runs".to_owned();
-    for percent in PERCENTILES {
-        text.push_str(&format!(",p{percent:02}"));
-    }
-    text.push('\n');
-    for (place, (name, every_s)) in envelopes.iter().enumerate() {
-        let of_runs = || runs.iter().filter_map(|run| run.get(place));
-        let times = of_runs().map(Vec::len).max().unwrap_or(0);
-        for time in 0..times {
-            let mut values: Vec<f64> = of_runs().filter_map(|run| run.get(time).copied()).collect();
-            values.sort_by(f64::total_cmp);
-            let time_s = number_text(time as f64 * every_s);
-            text.push_str(&format!("{},{time_s},{}", quoted(name), values.len()));
-            for percent in PERCENTILES {
-                let value = percentile(&values, percent).map_or_else(String::new, number_text);
-                text.push(',');
-                text.push_str(&value);
-            }
-            text.push('\n');
-        }
-    }
-    text
+pub fn percentiles_of(values: &mut [f64]) -> [Option<f64>; PERCENTILES.len()] {
+    values.sort_unstable_by(f64::total_cmp);
+    PERCENTILES.map(|percent| percentile(values, percent))
 }
 
 #[cfg(test)]
@@ -169,14 +146,9 @@ mod tests {
     }
 
     #[test]
-    fn percentiles_are_over_runs_that_got_there() {
-        let runs = [vec![vec![0.0, 1.0]], vec![vec![4.0]]];
-        let runs: Vec<&[Vec<f64>]> = runs.iter().map(Vec::as_slice).collect();
-        let table = envelope_table(&[("h_m".to_owned(), 0.5)], &runs);
-        assert_eq!(
-            table,
-            "envelope,time_s,runs,p00,p05,p25,p50,p75,p95,p100\n\
-             h_m,0,2,0,0.2,1,2,3,3.8,4\nh_m,0.5,1,1,1,1,1,1,1,1\n"
-        );
+    fn percentiles_by_hand() {
+        let found = percentiles_of(&mut [4.0, 0.0]);
+        assert_eq!(found, [0.0, 0.2, 1.0, 2.0, 3.0, 3.8, 4.0].map(Some));
+        assert_eq!(percentiles_of(&mut []), [None; 7]);
     }
 }

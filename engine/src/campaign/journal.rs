@@ -3,16 +3,17 @@
 //! A line reaches the system before the next run is taken up, and the disk at least once a second. What a kill
 //! leaves of a line has no sum that fits; it is cut off and its run done again.
 
-use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::CampaignError;
 use super::definition::Campaign;
-use super::record::Record;
+use super::record::{Record, RecordLine};
 
+/// Bytes that are read at once.
+const BUFFER: usize = 1 << 18;
 /// Wall time after which lines are handed to the disk.
 const HOLD: Duration = Duration::from_secs(1);
 /// Wall time for which a journal that is held is asked for again: [`is_held`] holds it for a moment.
@@ -29,51 +30,24 @@ fn header(campaign: &Campaign) -> String {
     format!("aerobot campaign {}\n", campaign.manifest.fingerprint)
 }
 
-/// The records in a text, and the bytes of it that are whole lines.
-fn parse(campaign: &Campaign, text: &[u8]) -> Option<(BTreeMap<u64, Record>, usize)> {
-    let header = header(campaign);
-    if header.as_bytes().starts_with(text) && text.len() < header.len() {
-        return Some((BTreeMap::new(), 0));
-    }
-    let lines = text.strip_prefix(header.as_bytes())?;
-    let whole = lines
-        .iter()
-        .rposition(|byte| *byte == b'\n')
-        .map_or(0, |end| end + 1);
-    let specification = &campaign.specification;
-    let (metrics, envelopes) = (
-        specification.metrics.0.len(),
-        specification.envelopes.0.len(),
-    );
-    let mut records = BTreeMap::new();
-    for line in lines[..whole].split(|byte| *byte == b'\n') {
-        let line = std::str::from_utf8(line).ok();
-        if let Some(record) = line.and_then(|line| Record::of_line(line, metrics, envelopes)) {
-            records.entry(record.index).or_insert(record);
-        }
-    }
-    Some((records, header.len() + whole))
-}
-
 fn foreign(path: &Path) -> CampaignError {
     let message = format!("`{}` is not a journal of this campaign", path.display());
     CampaignError::refused(message, "name another folder")
 }
 
-/// The records of a journal by index, none if there is no file.
+/// Hands every whole line of a journal to `take`, with its place in bytes; none if there is no file. Lines are
+/// read one at a time.
 ///
 /// # Errors
 /// The file cannot be read, or is of another campaign.
-pub fn read_journal(
+pub fn scan(
     campaign: &Campaign,
     path: &Path,
-) -> Result<BTreeMap<u64, Record>, CampaignError> {
-    match std::fs::read(path) {
-        Ok(text) => {
-            let found = parse(campaign, &text).ok_or_else(|| foreign(path))?;
-            Ok(found.0)
-        }
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(BTreeMap::new()),
+    take: &mut dyn FnMut(u64, &RecordLine),
+) -> Result<(), CampaignError> {
+    match File::open(path) {
+        Ok(file) => scan_file(campaign, path, &file, take).map(|_| ()),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
         Err(error) => Err(CampaignError::unreadable(path, &error)),
     }
 }
@@ -121,15 +95,68 @@ fn lock(file: &File) -> Result<(), TryLockError> {
     }
 }
 
+/// The bytes of a file that are whole lines.
+fn scan_file(
+    campaign: &Campaign,
+    path: &Path,
+    file: &File,
+    take: &mut dyn FnMut(u64, &RecordLine),
+) -> Result<u64, CampaignError> {
+    let mut reader = BufReader::with_capacity(BUFFER, file);
+    let mut line = Vec::new();
+    let mut next = |line: &mut Vec<u8>| {
+        line.clear();
+        let read = reader.read_until(b'\n', line);
+        read.map_err(|error| CampaignError::unreadable(path, &error))
+    };
+    let header = header(campaign);
+    let mut place = next(&mut line)? as u64;
+    if line != header.as_bytes() {
+        let is_torn = header.as_bytes().starts_with(&line);
+        return if is_torn { Ok(0) } else { Err(foreign(path)) };
+    }
+    let counts = campaign.counts();
+    loop {
+        let length = next(&mut line)?;
+        let Some(whole) = line.strip_suffix(b"\n") else {
+            return Ok(place);
+        };
+        let text = std::str::from_utf8(whole).ok();
+        if let Some(found) = text.and_then(|text| RecordLine::of_line(text, counts)) {
+            take(place, &found);
+        }
+        place += length as u64;
+    }
+}
+
+/// What a journal has of a run.
+///
+/// # Errors
+/// As [`scan`].
+pub fn find_record(
+    campaign: &Campaign,
+    path: &Path,
+    index: u64,
+) -> Result<Option<Record>, CampaignError> {
+    let mut found = None;
+    scan(campaign, path, &mut |_, line| {
+        if line.index == index && found.is_none() {
+            found = Some(line.record());
+        }
+    })?;
+    Ok(found)
+}
+
 impl Journal {
-    /// Opens a journal to go on with it, or begins one; gives the records that it has.
+    /// Opens a journal to go on with it, or begins one; `take` gets the lines that it has.
     ///
     /// # Errors
     /// Another process is at it, it is of another campaign, or the file system refused something.
     pub fn open(
         campaign: &Campaign,
         path: &Path,
-    ) -> Result<(Self, BTreeMap<u64, Record>), CampaignError> {
+        take: &mut dyn FnMut(&RecordLine),
+    ) -> Result<Self, CampaignError> {
         let unwritten = |error: io::Error| CampaignError::unwritten(path, &error);
         let mut options = OpenOptions::new();
         options.read(true).write(true).create(true).truncate(false);
@@ -143,23 +170,20 @@ impl Journal {
             }
             Err(TryLockError::Error(error)) => return Err(unwritten(error)),
         }
-        let mut text = Vec::new();
-        file.read_to_end(&mut text).map_err(unwritten)?;
-        let (records, whole) = parse(campaign, &text).ok_or_else(|| foreign(path))?;
+        let whole = scan_file(campaign, path, &file, &mut |_, line| take(line))?;
         let begun = file
-            .set_len(whole as u64)
-            .and_then(|()| file.seek(SeekFrom::Start(whole as u64)))
+            .set_len(whole)
+            .and_then(|()| file.seek(SeekFrom::Start(whole)))
             .and_then(|_| match whole {
                 0 => file.write_all(header(campaign).as_bytes()),
                 _ => Ok(()),
             });
         begun.map_err(unwritten)?;
-        let journal = Self {
+        Ok(Self {
             path: path.to_owned(),
             file,
             synchronised: Instant::now(),
-        };
-        Ok((journal, records))
+        })
     }
 
     /// Adds a run.

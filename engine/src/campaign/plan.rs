@@ -5,6 +5,7 @@ use super::comma_separated::CommaSeparated;
 use super::distributions::Distribution;
 use super::latin_hypercube::strata;
 use super::random_stream::{Purpose, RandomStream};
+use super::saltelli::Saltelli;
 use super::sobol::{MOST_FIELDS, Sobol};
 use super::specification::{CampaignSpec, Faults, MOST_RUNS, PlanSpec, entry_path};
 
@@ -15,6 +16,8 @@ pub struct Plan {
     pub runs: u64,
     fields: Vec<Field>,
     spread: Spread,
+    /// The seed of all runs, if the campaign sets it.
+    set_seed: Option<String>,
 }
 
 struct Field {
@@ -33,6 +36,8 @@ enum Spread {
     Independent,
     LatinHypercube(Vec<Vec<u32>>),
     Sobol(Sobol),
+    /// The sequence of twice as many fields as are drawn, and how runs are laid out.
+    Saltelli(Sobol, Saltelli),
 }
 
 /// The inputs of a run.
@@ -45,7 +50,7 @@ pub struct Inputs {
 }
 
 /// The field of a scene that seeds its draws.
-const RUN_SEED: &str = "run.seed";
+pub const RUN_SEED: &str = "run.seed";
 
 impl Inputs {
     /// As overrides `PATH=RON` of the scene.
@@ -118,6 +123,17 @@ impl Plan {
                 return None;
             }
             PlanSpec::Sobol => Spread::Sobol(Sobol::new(seed, drawn)),
+            PlanSpec::Saltelli if 2 * drawn > MOST_FIELDS => {
+                let most = MOST_FIELDS / 2;
+                let message = format!("`Saltelli` has coordinates for {most} fields, {drawn} vary");
+                let help = "set those that matter least";
+                faults.0.add("plan", message, help);
+                return None;
+            }
+            PlanSpec::Saltelli => {
+                let layout = Saltelli::of_campaign(specification);
+                Spread::Saltelli(Sobol::new(seed, 2 * drawn), layout)
+            }
             _ => Spread::Independent,
         };
         Some(Self {
@@ -125,6 +141,7 @@ impl Plan {
             runs,
             fields,
             spread,
+            set_seed: set_seed(specification),
         })
     }
 
@@ -142,7 +159,7 @@ impl Plan {
                         values.get(place as usize).cloned().unwrap_or_default()
                     }
                     FieldSource::Drawn(number, distribution, measured) => {
-                        let u = self.part(index, *number, random.unit());
+                        let u = self.part(index, *number, &mut random);
                         distribution.value(u, measured)
                     }
                 };
@@ -150,15 +167,37 @@ impl Plan {
             })
             .collect();
         let given = fields.iter().find(|(path, _)| path == RUN_SEED);
-        let seed = given.map_or_else(
-            || {
-                RandomStream::new(self.seed, Purpose::RunSeed, index)
-                    .bits()
-                    .to_string()
-            },
-            |(_, value)| value.clone(),
-        );
+        let seed = given.map(|(_, value)| value).or(self.set_seed.as_ref());
+        let seed = seed.cloned().unwrap_or_else(|| {
+            let stream = match &self.spread {
+                Spread::Saltelli(_, layout) => layout.seed_stream(index),
+                _ => index,
+            };
+            let mut stream = RandomStream::new(self.seed, Purpose::RunSeed, stream);
+            stream.bits().to_string()
+        });
         Inputs { fields, seed }
+    }
+
+    /// How the runs of a Saltelli plan are laid out.
+    #[must_use]
+    pub fn saltelli(&self) -> Option<Saltelli> {
+        match self.spread {
+            Spread::Saltelli(_, layout) => Some(layout),
+            _ => None,
+        }
+    }
+
+    /// Whether fields are drawn independently of each other and of the runs before, but for the strata of a Latin
+    /// hypercube.
+    #[must_use]
+    pub fn is_independent(&self) -> bool {
+        let is_drawn = |field: &Field| matches!(field.source, FieldSource::Drawn(..));
+        let is_spread = matches!(
+            self.spread,
+            Spread::Independent | Spread::LatinHypercube(..)
+        );
+        is_spread && self.fields.iter().all(is_drawn)
     }
 
     /// Names of the fields that vary, in the order of the table.
@@ -168,6 +207,21 @@ impl Plan {
             .iter()
             .map(|field| field.path.as_str())
             .collect()
+    }
+
+    /// Whether all values that a field may have are numbers that 64 bits of floating point hold.
+    #[must_use]
+    pub fn is_numeric(&self, field: usize) -> bool {
+        let Some(field) = self.fields.get(field) else {
+            return false;
+        };
+        match &field.source {
+            FieldSource::Steps(values, _) => values.iter().all(|value| is_number(value)),
+            FieldSource::Drawn(_, Distribution::Choice(values), _) => {
+                values.iter().all(|value| is_number(&value.0))
+            }
+            FieldSource::Drawn(..) => true,
+        }
     }
 
     /// Some values of each field that a scene should accept: of steps and choices all, up to a hundred.
@@ -189,9 +243,18 @@ impl Plan {
             .collect()
     }
 
-    /// The part of a distribution that lies below the value of a run; `jitter` is the run's own draw.
-    fn part(&self, index: u64, number: usize, jitter: f64) -> f64 {
+    /// The part of a distribution that lies below the value of a run; `random` are the run's own draws.
+    fn part(&self, index: u64, number: usize, random: &mut RandomStream) -> f64 {
+        let jitter = random.unit();
         match &self.spread {
+            Spread::Saltelli(sequence, layout) => {
+                let half = if layout.is_of_b(index, number) {
+                    sequence.fields() / 2
+                } else {
+                    0
+                };
+                sequence.coordinate(index / layout.runs_each(), half + number)
+            }
             Spread::Independent => jitter,
             Spread::Sobol(sequence) => sequence.coordinate(index, number),
             Spread::LatinHypercube(strata) => {
@@ -203,6 +266,19 @@ impl Plan {
             }
         }
     }
+}
+
+/// The seed that a campaign sets for all its runs.
+pub(super) fn set_seed(specification: &CampaignSpec) -> Option<String> {
+    let mut set = specification.set.0.iter();
+    set.find_map(|(path, value)| (path == RUN_SEED).then(|| value.0.clone()))
+}
+
+/// Whether a text is a number; a whole one above 2^53, such as a seed, would lose digits as one.
+fn is_number(text: &str) -> bool {
+    let is_whole = text.chars().all(|c| c.is_ascii_digit() || c == '-');
+    let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
+    value.is_some_and(|value| !is_whole || value.abs() <= (1_u64 << 53) as f64)
 }
 
 /// The number of runs; fields in steps get their strides.
@@ -247,6 +323,9 @@ fn count_runs(
                 }
             }
             *count
+        }
+        PlanSpec::Saltelli => {
+            return Saltelli::of_campaign(specification).runs(specification, faults);
         }
         _ => return specification.runs,
     };

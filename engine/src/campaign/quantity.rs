@@ -74,6 +74,31 @@ pub fn unit_of(name: &str) -> &str {
     unit.next().map_or("", |(_, unit)| unit)
 }
 
+/// A unit at the end of a name as it is written by itself: `m/s` for `m_s`. What may be read in two ways, as
+/// `n_m`, stays as it is.
+#[must_use]
+pub fn unit_symbol(unit: &str) -> String {
+    let symbol = match unit {
+        "n" => "N",
+        "pa" => "Pa",
+        "k" => "K",
+        "j" => "J",
+        "w" => "W",
+        "v" => "V",
+        "a" => "A",
+        "hz" => "Hz",
+        "m_s" => "m/s",
+        "m_s2" => "m/s2",
+        "rad_s" => "rad/s",
+        "rad_s2" => "rad/s2",
+        "kg_m3" => "kg/m3",
+        "kg_m2" => "kg m2",
+        "per_s" => "1/s",
+        _ => unit,
+    };
+    symbol.to_owned()
+}
+
 fn of_state(row: &StateRow, column: &str) -> Option<f64> {
     let (position, velocity) = (row.position_m, row.velocity_m_s);
     Some(match column {

@@ -17,6 +17,10 @@ pub enum Purpose {
     Shift = 4,
     /// Resamples of a bootstrap; a stream for each metric.
     Bootstrap = 5,
+    /// Resamples of base samples, for intervals of Sobol indices; a stream for each metric.
+    IndexBootstrap = 6,
+    /// The order of runs in which a field has the same value; a stream for each field and metric.
+    Ties = 7,
 }
 
 /// An endless stream of random numbers.

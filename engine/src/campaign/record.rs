@@ -71,43 +71,86 @@ impl Record {
         .join("\t");
         format!("{line}\t{:016x}\n", fingerprint([line.as_bytes()]))
     }
+}
 
+/// A line of a journal that is whole, of which no more is read than is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct RecordLine<'a> {
+    /// Index of the run, from 0.
+    pub index: u64,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Simulated time, s.
+    pub simulated_s: f64,
+    reason: &'a str,
+    metrics: &'a str,
+    envelopes: &'a str,
+    /// How many metrics and envelopes there are.
+    counts: (usize, usize),
+}
+
+impl<'a> RecordLine<'a> {
     /// Of a line without its end, of a campaign with so many metrics and envelopes; `None` if it is not whole.
     #[must_use]
-    pub fn of_line(line: &str, metrics: usize, envelopes: usize) -> Option<Self> {
+    pub fn of_line(line: &'a str, counts: (usize, usize)) -> Option<Self> {
         let (content, sum) = line.rsplit_once('\t')?;
         if sum != format!("{:016x}", fingerprint([content.as_bytes()])) {
             return None;
         }
-        let parts: Vec<&str> = content.split('\t').collect();
-        let [index, outcome, simulated_s, reason, values, histories] = parts.as_slice() else {
-            return None;
+        let mut parts = content.split('\t');
+        let mut part = || parts.next();
+        let line = Self {
+            index: part()?.parse().ok()?,
+            outcome: Outcome::of_word(part()?)?,
+            simulated_s: number(part()?)?,
+            reason: part()?,
+            metrics: part()?,
+            envelopes: part()?,
+            counts,
         };
-        let number = |text: &str| text.parse::<f64>().ok().filter(|value| value.is_finite());
-        let metric = |text: &str| match text {
-            "" => Some(None),
-            _ => number(text).map(Some),
-        };
-        let metrics_read: Vec<Option<f64>> = split(values, ',', metrics)
-            .map(metric)
-            .collect::<Option<_>>()?;
-        let history = |text: &str| -> Option<Vec<f64>> {
-            let values = text.split(',').filter(|_| !text.is_empty());
-            values.map(number).collect()
-        };
-        let envelopes_read: Vec<Vec<f64>> = split(histories, ';', envelopes)
-            .map(history)
-            .collect::<Option<_>>()?;
-        let fits = metrics_read.len() == metrics && envelopes_read.len() == envelopes;
-        fits.then_some(Self {
-            index: index.parse().ok()?,
-            outcome: Outcome::of_word(outcome)?,
-            reason: unescaped(reason),
-            simulated_s: number(simulated_s)?,
-            metrics: metrics_read,
-            envelopes: envelopes_read,
-        })
+        let found = (
+            split(line.metrics, ',', counts.0).count(),
+            split(line.envelopes, ';', counts.1).count(),
+        );
+        (parts.next().is_none() && found == counts).then_some(line)
     }
+
+    /// Why the run did not get to its end.
+    #[must_use]
+    pub fn reason(&self) -> String {
+        unescaped(self.reason)
+    }
+
+    /// The metrics in the order of the campaign.
+    pub fn metrics(&self) -> impl Iterator<Item = Option<f64>> + 'a {
+        split(self.metrics, ',', self.counts.0).map(number)
+    }
+
+    /// The values of an envelope as texts, by its place in the campaign.
+    pub fn envelope(&self, place: usize) -> impl Iterator<Item = &'a str> + 'a {
+        let values = split(self.envelopes, ';', self.counts.1).nth(place);
+        let values = values.filter(|text| !text.is_empty());
+        values.into_iter().flat_map(|text| text.split(','))
+    }
+
+    /// Everything that is in it.
+    #[must_use]
+    pub fn record(&self) -> Record {
+        let envelope = |place| self.envelope(place).filter_map(number).collect();
+        Record {
+            index: self.index,
+            outcome: self.outcome,
+            reason: self.reason(),
+            simulated_s: self.simulated_s,
+            metrics: self.metrics().collect(),
+            envelopes: (0..self.counts.1).map(envelope).collect(),
+        }
+    }
+}
+
+/// A finite number.
+pub(super) fn number(text: &str) -> Option<f64> {
+    text.parse::<f64>().ok().filter(|value| value.is_finite())
 }
 
 fn joined(parts: impl Iterator<Item = String>, between: &str) -> String {
@@ -167,11 +210,17 @@ mod tests {
         };
         let line = record.to_line();
         let whole = line.trim_end_matches('\n');
-        assert_eq!(Record::of_line(whole, 2, 2), Some(record));
+        let read = RecordLine::of_line(whole, (2, 2)).unwrap();
+        assert_eq!(read.record(), record);
+        assert_eq!(
+            read.envelope(0).collect::<Vec<_>>(),
+            ["1", "0.3333333333333333"]
+        );
+        assert_eq!((read.envelope(1).count(), read.envelope(2).count()), (0, 0));
         for end in 0..whole.len() {
-            assert_eq!(Record::of_line(&whole[..end], 2, 2), None);
+            assert!(RecordLine::of_line(&whole[..end], (2, 2)).is_none());
         }
-        assert_eq!(Record::of_line(whole, 3, 2), None);
+        assert!(RecordLine::of_line(whole, (3, 2)).is_none());
     }
 
     /// Test vectors of the algorithm's authors.

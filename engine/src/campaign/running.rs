@@ -1,12 +1,13 @@
 //! Runs a campaign, or a shard of it, from where it is.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use super::CampaignError;
 use super::definition::Campaign;
-use super::journal::{Journal, read_journal};
-use super::record::Record;
+use super::finished_runs::FinishedRuns;
+use super::journal::{Journal, scan};
+use super::record::{Record, RecordLine};
+use super::run_set::RunSet;
 use super::shards::Shard;
 use super::statistics::mean_interval_width;
 use super::worker_pool::do_all;
@@ -34,12 +35,48 @@ pub struct Work {
     pub precision: Option<Precision>,
 }
 
-/// Records by index.
-pub type Records = BTreeMap<u64, Record>;
+/// What is known of a shard while it runs: which runs are finished, and the metric of a precision.
+struct Finished {
+    runs: RunSet,
+    /// The place of the metric, and its value by index, of runs that have it.
+    metric: Option<(usize, BTreeMap<u64, f64>)>,
+}
+
+impl Finished {
+    fn new(shard: Shard, metric: Option<usize>) -> Self {
+        Self {
+            runs: RunSet::new(shard),
+            metric: metric.map(|place| (place, BTreeMap::new())),
+        }
+    }
+
+    fn take(&mut self, index: u64, value: impl FnOnce(usize) -> Option<f64>) {
+        if self.runs.insert(index)
+            && let Some((place, values)) = &mut self.metric
+            && let Some(value) = value(*place)
+        {
+            values.insert(index, value);
+        }
+    }
+
+    fn take_line(&mut self, line: &RecordLine) {
+        self.take(line.index, |place| line.metrics().nth(place).flatten());
+    }
+
+    /// Whether the interval of the mean over runs before an index is narrow enough.
+    fn is_precise(&self, end: u64, precision: &Precision) -> bool {
+        let values = self
+            .metric
+            .iter()
+            .flat_map(|(_, values)| values.range(..end));
+        let values: Vec<f64> = values.map(|(_, value)| *value).collect();
+        mean_interval_width(&values).is_some_and(|found| found <= precision.width)
+    }
+}
 
 /// Runs what is missing of a shard; one that is finished is left alone. `progress` hears of how many of how many
-/// runs are finished, first of what was there. Gives the records of the shard, in their order and without a gap
-/// as far as they count: all of them, or those up to where a precision is reached.
+/// runs are finished, first of what was there. Gives how many runs of the shard count, in the order of their
+/// indices: all of them, or those up to where a precision is reached.
 ///
 /// # Errors
 /// The journal cannot be written, another process is at it, or there is no such metric.
@@ -49,50 +86,41 @@ pub fn run_shard(
     shard: Shard,
     work: &Work,
     progress: &mut dyn FnMut(u64, u64),
-) -> Result<Records, CampaignError> {
-    let metric = metric_place(campaign, work)?;
+) -> Result<u64, CampaignError> {
+    let mut finished = Finished::new(shard, metric_place(campaign, work)?);
     let finished_file = shard.finished_file(&campaign.folder);
-    let part_file = shard.part_file(&campaign.folder);
-    let indices: Vec<u64> = shard.indices(campaign.plan.runs).collect();
-    let (mut journal, mut records) = open(campaign, &part_file, &finished_file)?;
-    let total = indices.len() as u64;
-    progress(records.len() as u64, total);
-    let stride = match metric {
-        Some(_) => LOOK_EVERY as usize,
-        None => indices.len().max(1),
-    };
-    for (number, batch) in indices.chunks(stride).enumerate() {
-        let missing: Vec<u64> = batch
-            .iter()
-            .copied()
-            .filter(|index| !records.contains_key(index))
-            .collect();
+    let mut journal = open(campaign, shard, &mut finished)?;
+    let runs = campaign.plan.runs;
+    let total = shard.indices(runs).count() as u64;
+    progress(finished.runs.len(), total);
+    let stride = work.precision.as_ref().map_or(total.max(1), |_| LOOK_EVERY);
+    for start in (0..total).step_by(stride as usize) {
+        let before = finished.runs.clone();
+        let batch = shard.indices(runs).skip(start as usize);
+        let missing = batch
+            .take(stride as usize)
+            .filter(move |index| !before.contains(*index));
         if let Some(journal) = &mut journal {
             let job = |index| campaign.run(simulator, index);
-            do_all(
-                &missing,
-                work.workers,
-                job,
-                |record| -> Result<(), CampaignError> {
-                    journal.add(&record)?;
-                    records.insert(record.index, record);
-                    progress(records.len() as u64, total);
-                    Ok(())
-                },
-            )?;
+            let mut take = |record: Record| -> Result<(), CampaignError> {
+                journal.add(&record)?;
+                finished.take(record.index, |place| record.metrics.get(place).copied()?);
+                progress(finished.runs.len(), total);
+                Ok(())
+            };
+            do_all(missing, work.workers, job, &mut take)?;
         }
-        let count = ((number + 1) * stride).min(indices.len());
-        let counted = &indices[..count];
-        if let (Some(place), Some(precision)) = (metric, &work.precision)
-            && count < indices.len()
-            && is_precise(&records, counted, place, precision.width)
+        let counted = start + stride;
+        let end = shard.number - 1 + counted * shard.count;
+        if let Some(precision) = &work.precision
+            && counted < total
+            && finished.is_precise(end, precision)
         {
-            let last = counted.last().copied().unwrap_or(0);
-            records.retain(|index, _| *index <= last);
-            return Ok(records);
+            return Ok(counted);
         }
     }
-    if let Some(index) = indices.iter().find(|index| !records.contains_key(index)) {
+    let mut indices = shard.indices(runs);
+    if let Some(index) = indices.find(|index| !finished.runs.contains(*index)) {
         let message = format!("run {index} is missing in `{}`", finished_file.display());
         return Err(CampaignError::refused(
             message,
@@ -102,31 +130,40 @@ pub fn run_shard(
     if let Some(journal) = journal {
         journal.finish(&finished_file)?;
     }
-    Ok(records)
+    Ok(total)
 }
 
-/// The journal to go on with, none if the shard is finished, and the records that there are.
+/// The journal to go on with, none if the shard is finished; `finished` hears of what there is.
 fn open(
     campaign: &Campaign,
-    part_file: &Path,
-    finished_file: &Path,
-) -> Result<(Option<Journal>, Records), CampaignError> {
-    if finished_file.exists() {
-        return Ok((None, read_journal(campaign, finished_file)?));
-    }
-    let (journal, records) = Journal::open(campaign, part_file)?;
-    // Another process may have finished it since.
-    if finished_file.exists() {
+    shard: Shard,
+    finished: &mut Finished,
+) -> Result<Option<Journal>, CampaignError> {
+    let finished_file = shard.finished_file(&campaign.folder);
+    let part_file = shard.part_file(&campaign.folder);
+    if !finished_file.exists() {
+        let journal = Journal::open(campaign, &part_file, &mut |line| finished.take_line(line))?;
+        // Another process may have finished it since.
+        if !finished_file.exists() {
+            return Ok(Some(journal));
+        }
         let _ = std::fs::remove_file(part_file);
-        return Ok((None, read_journal(campaign, finished_file)?));
     }
-    Ok((Some(journal), records))
+    scan(campaign, &finished_file, &mut |_, line| {
+        finished.take_line(line)
+    })?;
+    Ok(None)
 }
 
 fn metric_place(campaign: &Campaign, work: &Work) -> Result<Option<usize>, CampaignError> {
     let Some(precision) = &work.precision else {
         return Ok(None);
     };
+    if campaign.plan.saltelli().is_some() {
+        let message =
+            "`--until-ci` takes runs as independent, and those of a Saltelli plan are not";
+        return Err(CampaignError::refused(message, "leave it out"));
+    }
     let metrics = &campaign.specification.metrics.0;
     let place = metrics
         .iter()
@@ -149,30 +186,14 @@ fn metric_place(campaign: &Campaign, work: &Work) -> Result<Option<usize>, Campa
     Ok(place)
 }
 
-/// Whether the interval of the mean over the counted runs is narrow enough.
-fn is_precise(records: &Records, counted: &[u64], place: usize, width: f64) -> bool {
-    let values: Vec<f64> = counted
-        .iter()
-        .filter_map(|index| records.get(index)?.metrics.get(place).copied()?)
-        .collect();
-    mean_interval_width(&values).is_some_and(|found| found <= width)
-}
-
-/// The records of all shards, which have to be finished.
+/// The runs of all shards, which have to be finished.
 ///
 /// # Errors
 /// Which shards are not, or that a journal has not what it should.
-pub fn merged(campaign: &Campaign) -> Result<Records, CampaignError> {
-    let mut records = Records::new();
-    let mut missing = Vec::new();
-    for shard in campaign.shards() {
-        let file = shard.finished_file(&campaign.folder);
-        if file.exists() {
-            records.extend(read_journal(campaign, &file)?);
-        } else {
-            missing.push(shard.number.to_string());
-        }
-    }
+pub fn merged(campaign: &Campaign) -> Result<FinishedRuns, CampaignError> {
+    let shards = campaign.shards();
+    let missing = shards.filter(|shard| !shard.finished_file(&campaign.folder).exists());
+    let missing: Vec<String> = missing.map(|shard| shard.number.to_string()).collect();
     if !missing.is_empty() {
         let message = format!(
             "{} of {} shards are not finished: {}",
@@ -183,14 +204,5 @@ pub fn merged(campaign: &Campaign) -> Result<Records, CampaignError> {
         let help = "`aerobot campaign run DIR --shard K/N` runs one of them";
         return Err(CampaignError::refused(message, help));
     }
-    match (0..campaign.plan.runs).find(|index| !records.contains_key(index)) {
-        None => Ok(records),
-        Some(index) => {
-            let message = format!("run {index} is in no journal of its shard");
-            Err(CampaignError::refused(
-                message,
-                "remove that journal, and run the shard again",
-            ))
-        }
-    }
+    FinishedRuns::read(campaign, campaign.plan.runs)
 }

@@ -8,7 +8,9 @@ use std::path::{Path, PathBuf};
 
 use super::CampaignError;
 use super::definition::Campaign;
-use super::journal::read_journal;
+use super::journal::scan;
+use super::record::Outcome;
+use super::run_set::RunSet;
 
 /// Name of the folder of journals.
 pub const SHARDS: &str = "shards";
@@ -140,6 +142,17 @@ impl Shard {
             .join(SHARDS)
             .join(format!("shard-{:05}.journal", self.number))
     }
+
+    /// Its journal, finished or not.
+    #[must_use]
+    pub fn file(self, folder: &Path) -> PathBuf {
+        let finished = self.finished_file(folder);
+        if finished.exists() {
+            finished
+        } else {
+            self.part_file(folder)
+        }
+    }
 }
 
 impl Campaign {
@@ -155,24 +168,18 @@ impl Campaign {
     /// A journal cannot be read.
     pub fn status(&self) -> Result<Vec<ShardStatus>, CampaignError> {
         let of_shard = |shard: Shard| {
-            let finished_file = shard.finished_file(&self.folder);
-            let is_finished = finished_file.exists();
-            let part_file = shard.part_file(&self.folder);
-            let records = read_journal(
-                self,
-                if is_finished {
-                    &finished_file
-                } else {
-                    &part_file
-                },
-            )?;
-            let failed = records.values().filter(|record| !record.reason.is_empty());
+            let (mut finished, mut failed) = (RunSet::new(shard), 0);
+            scan(self, &shard.file(&self.folder), &mut |_, line| {
+                if finished.insert(line.index) {
+                    failed += u64::from(line.outcome != Outcome::Done);
+                }
+            })?;
             Ok(ShardStatus {
                 shard,
                 runs: shard.indices(self.plan.runs).count() as u64,
-                finished: records.len() as u64,
-                is_finished,
-                failed: failed.count() as u64,
+                finished: finished.len(),
+                is_finished: shard.finished_file(&self.folder).exists(),
+                failed,
             })
         };
         self.shards().map(of_shard).collect()

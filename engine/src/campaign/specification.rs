@@ -30,6 +30,9 @@ pub struct CampaignSpec {
     /// Number of runs; a plan in steps knows its own.
     #[serde(default)]
     pub runs: Option<u64>,
+    /// Number of base samples of a `Saltelli` plan, each of which takes a run for each factor and two more.
+    #[serde(default)]
+    pub base_samples: Option<u64>,
     /// Seed of everything that is drawn.
     #[serde(default)]
     pub seed: u64,
@@ -64,6 +67,11 @@ pub enum PlanSpec {
     LatinHypercube,
     /// Sobol's sequence, shifted by the seed: inputs follow from the seed and the index alone.
     Sobol,
+    /// For Sobol indices (Saltelli et al., Computer Physics Communications 181, 259 (2010)): of each base sample two
+    /// independent runs A and B, and for each factor one that is A with that factor of B. Factors are the fields
+    /// that vary and `run.seed`, which stands for chance, unless it is set. A and B are two halves of one point of
+    /// the shifted Sobol sequence.
+    Saltelli,
     /// Every combination of the fields in steps, the last field fastest; others are drawn as in `MonteCarlo`.
     Grid,
     /// The fields in steps go side by side; others are drawn as in `MonteCarlo`.
@@ -240,19 +248,27 @@ impl CampaignSpec {
     }
 
     fn check_runs(&self, report: &mut FieldReport) {
+        let of_base_samples = self.plan == PlanSpec::Saltelli && self.base_samples.is_some();
         let knows_itself = matches!(
             self.plan,
             PlanSpec::Grid | PlanSpec::Lists | PlanSpec::Table(_)
         );
-        match self.runs {
-            None if !knows_itself => {
-                report.add("", "`runs` is missing", "how many runs: `runs: 1000`");
+        if self.base_samples.is_some() && self.plan != PlanSpec::Saltelli {
+            let message = "only `plan: Saltelli` has base samples";
+            report.add("base_samples", message, "leave it out, or give `runs`");
+        }
+        for (field, count) in [("runs", self.runs), ("base_samples", self.base_samples)] {
+            if let Some(count) = count.filter(|count| *count == 0 || *count > MOST_RUNS) {
+                let message = format!("`{field}` must be from 1 to {MOST_RUNS}, it is {count}");
+                report.add(field, message, "");
             }
-            Some(runs) if runs == 0 || runs > MOST_RUNS => {
-                let message = format!("`runs` must be from 1 to {MOST_RUNS}, it is {runs}");
-                report.add("runs", message, "");
-            }
-            _ => {}
+        }
+        if self.runs.is_none() && !knows_itself && !of_base_samples {
+            let help = match self.plan {
+                PlanSpec::Saltelli => "how many base samples: `base_samples: 256`",
+                _ => "how many runs: `runs: 1000`",
+            };
+            report.add("", "`runs` is missing", help);
         }
     }
 

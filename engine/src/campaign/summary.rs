@@ -1,13 +1,13 @@
 //! `summary.json`: what the runs of a campaign have in common.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use serde::Serialize;
 
 use super::definition::Campaign;
-use super::record::Outcome;
-use super::running::Records;
+use super::finished_runs::FinishedRuns;
+use super::sensitivity::{self, SobolIndex, input_column, sobol_indices};
+use super::sobol_indices::Estimate;
 use super::statistics::{bootstrap, mean_and_deviation, percentile, rank_correlation};
 
 /// Percentiles of every metric.
@@ -36,6 +36,8 @@ pub struct CampaignSummary {
     pub metrics: Vec<MetricSummary>,
     /// Spearman's rank correlation of each field that varies with each metric, where both are numbers.
     pub rank_correlations: Vec<RankCorrelation>,
+    /// Which part of each metric's variance each field makes.
+    pub sobol_indices: Vec<SobolIndex>,
     /// How the numbers are meant.
     pub notes: Vec<String>,
 }
@@ -49,15 +51,24 @@ pub struct Failure {
     pub runs: u64,
     /// Index of the first of them.
     pub first_run: u64,
+    /// Its inputs, as `--set` has them.
+    pub first_inputs: Vec<String>,
+    /// The command that repeats it, with `DIR` for the folder of the campaign.
+    pub replay: String,
 }
+
+/// What stands for the folder of the campaign in a summary, which is the same wherever that is.
+const FOLDER: &str = "DIR";
 
 /// A metric over all runs that have it, in its unit.
 #[derive(Clone, Debug, Serialize)]
 pub struct MetricSummary {
     /// Its name.
     pub name: String,
-    /// Runs that have it.
+    /// Runs that have it, and count for all but the extremes: of a Saltelli plan those of A and B.
     pub runs: u64,
+    /// Runs that got to their end without it: what `FirstTime` waits for never was.
+    pub done_without: u64,
     /// Mean.
     pub mean: Option<f64>,
     /// 95 % interval of the mean by the bootstrap.
@@ -98,43 +109,35 @@ pub struct RankCorrelation {
     pub runs: u64,
 }
 
-/// Folds the records, in the order of their indices.
+/// Folds the runs, in the order of their indices.
 #[must_use]
-pub fn summarise(campaign: &Campaign, records: &Records) -> CampaignSummary {
-    let names = campaign
-        .specification
-        .metrics
-        .0
-        .iter()
-        .map(|(name, _)| name);
-    let metrics = names.enumerate();
-    let metrics = metrics.map(|(place, name)| of_metric(campaign, records, place, name));
-    let done = records
-        .values()
-        .filter(|record| record.outcome == Outcome::Done);
+pub fn summarise(campaign: &Campaign, runs: &FinishedRuns) -> CampaignSummary {
+    let metrics = campaign.specification.metrics.0.iter().enumerate();
+    let metrics = metrics.map(|(place, (name, _))| of_metric(campaign, runs, place, name));
     CampaignSummary {
         version: campaign.manifest.version.clone(),
         campaign: campaign.specification.name.clone(),
         fingerprint: campaign.manifest.fingerprint.clone(),
         seed: campaign.specification.seed,
         runs_planned: campaign.plan.runs,
-        runs: records.len() as u64,
-        runs_done: done.count() as u64,
-        failures: failures(records),
+        runs: runs.count(),
+        runs_done: runs.done(),
+        failures: runs.failures(campaign),
         metrics: metrics.collect(),
-        rank_correlations: rank_correlations(campaign, records),
-        notes: notes(campaign, records),
+        rank_correlations: rank_correlations(campaign, runs),
+        sobol_indices: sobol_indices(campaign, runs),
+        notes: notes(campaign, runs),
     }
 }
 
-fn notes(campaign: &Campaign, records: &Records) -> Vec<String> {
+fn notes(campaign: &Campaign, runs: &FinishedRuns) -> Vec<String> {
     let mut notes = vec![
         "intervals are of the percentile bootstrap and take runs as independent: of a Latin hypercube or \
          Sobol's sequence they are too wide as a rule, of a grid or a list they mean little"
             .to_owned(),
-        "Sobol indices are left out: no plan here is laid out for their estimators".to_owned(),
     ];
-    if (records.len() as u64) < campaign.plan.runs {
+    notes.extend(sensitivity::notes(campaign));
+    if runs.count() < campaign.plan.runs {
         notes.push(
             "the campaign ended at a width of an interval that was looked at several times, which makes the \
              interval cover somewhat less than it says"
@@ -144,31 +147,21 @@ fn notes(campaign: &Campaign, records: &Records) -> Vec<String> {
     notes
 }
 
-fn failures(records: &Records) -> Vec<Failure> {
-    let mut found: BTreeMap<String, (u64, u64)> = BTreeMap::new();
-    for record in records
-        .values()
-        .filter(|record| record.outcome != Outcome::Done)
-    {
-        let reason = format!(
-            "{}: {}",
-            record.outcome.word(),
-            without_numbers(&record.reason)
-        );
-        found.entry(reason).or_insert((0, record.index)).0 += 1;
+impl Failure {
+    /// Of so many runs, the first of which has this index.
+    pub(super) fn new(campaign: &Campaign, reason: &str, (runs, first_run): (u64, u64)) -> Self {
+        Self {
+            reason: reason.to_owned(),
+            runs,
+            first_run,
+            first_inputs: campaign.plan.inputs(first_run).overrides(),
+            replay: format!("aerobot campaign replay {FOLDER} --run {first_run}"),
+        }
     }
-    let failure = |(reason, (runs, first_run))| Failure {
-        reason,
-        runs,
-        first_run,
-    };
-    let mut found: Vec<Failure> = found.into_iter().map(failure).collect();
-    found.sort_by_key(|failure| std::cmp::Reverse(failure.runs));
-    found
 }
 
 /// A text with `#` in the place of each number.
-fn without_numbers(text: &str) -> String {
+pub(super) fn without_numbers(text: &str) -> String {
     let mut found = String::new();
     let mut in_number = false;
     let mut before = ' ';
@@ -187,13 +180,16 @@ fn without_numbers(text: &str) -> String {
     found
 }
 
-fn of_metric(campaign: &Campaign, records: &Records, place: usize, name: &str) -> MetricSummary {
-    let value_of = |(index, record): (&u64, &super::record::Record)| {
-        Some((record.metrics.get(place).copied()??, *index))
-    };
-    let mut values: Vec<(f64, u64)> = records.iter().filter_map(value_of).collect();
+fn of_metric(campaign: &Campaign, runs: &FinishedRuns, place: usize, name: &str) -> MetricSummary {
+    let mut values: Vec<(f64, u64)> = (0..runs.count())
+        .filter_map(|index| Some((runs.metric(index, place)?, index)))
+        .collect();
     values.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let sorted: Vec<f64> = values.iter().map(|(value, _)| *value).collect();
+    let missing = runs.done() - values.len() as u64;
+    let independent = values
+        .iter()
+        .filter(|(_, index)| is_independent(campaign, *index));
+    let sorted: Vec<f64> = independent.map(|(value, _)| *value).collect();
     let moments = mean_and_deviation(&sorted);
     let seed = campaign.specification.seed;
     let intervals = bootstrap(&sorted, &PERCENTS, seed, place as u64);
@@ -209,6 +205,7 @@ fn of_metric(campaign: &Campaign, records: &Records, place: usize, name: &str) -
     MetricSummary {
         name: name.to_owned(),
         runs: sorted.len() as u64,
+        done_without: missing,
         mean: moments
             .map(|(mean, _)| mean)
             .or_else(|| sorted.first().copied()),
@@ -221,52 +218,52 @@ fn of_metric(campaign: &Campaign, records: &Records, place: usize, name: &str) -
     }
 }
 
-fn rank_correlations(campaign: &Campaign, records: &Records) -> Vec<RankCorrelation> {
-    let metrics = &campaign.specification.metrics.0;
-    let fields = campaign.plan.field_names();
-    let mut pairs = vec![Vec::new(); fields.len() * metrics.len()];
-    for (index, record) in records {
-        let inputs = campaign.plan.inputs(*index).fields;
-        for (field, (_, text)) in inputs.iter().enumerate() {
-            let Some(input) = text.parse::<f64>().ok().filter(|value| value.is_finite()) else {
-                continue;
-            };
-            for (metric, value) in record.metrics.iter().enumerate() {
-                let pairs = pairs.get_mut(field * metrics.len() + metric);
-                if let (Some(pairs), Some(value)) = (pairs, value) {
-                    pairs.push((input, *value));
-                }
+/// Whether a run shares no input with those before: of a Saltelli plan most do.
+fn is_independent(campaign: &Campaign, index: u64) -> bool {
+    let layout = campaign.plan.saltelli();
+    layout.is_none_or(|layout| layout.is_independent(index))
+}
+
+fn rank_correlations(campaign: &Campaign, runs: &FinishedRuns) -> Vec<RankCorrelation> {
+    let mut found = Vec::new();
+    for (number, field) in campaign.plan.field_names().into_iter().enumerate() {
+        if !campaign.plan.is_numeric(number) {
+            continue;
+        }
+        let inputs = input_column(campaign, number, runs.count());
+        for (place, (metric, _)) in campaign.specification.metrics.0.iter().enumerate() {
+            let pairs: Vec<(f64, f64)> = (0..runs.count())
+                .zip(&inputs)
+                .filter(|(index, _)| is_independent(campaign, *index))
+                .filter_map(|(index, input)| Some((*input, runs.metric(index, place)?)))
+                .collect();
+            if !pairs.is_empty() {
+                found.push(RankCorrelation {
+                    field: field.to_owned(),
+                    metric: metric.clone(),
+                    spearman: rank_correlation(&pairs),
+                    runs: pairs.len() as u64,
+                });
             }
         }
     }
-    let both = fields
-        .iter()
-        .flat_map(|field| metrics.iter().map(move |metric| (field, metric)));
-    let both = both.zip(pairs).filter(|(_, pairs)| !pairs.is_empty());
-    both.map(|((field, (metric, _)), pairs)| RankCorrelation {
-        field: (*field).to_owned(),
-        metric: metric.clone(),
-        spearman: rank_correlation(&pairs),
-        runs: pairs.len() as u64,
-    })
-    .collect()
+    found
 }
 
 impl CampaignSummary {
-    /// A few lines for the terminal.
+    /// A few lines for the terminal; `folder` is that of the campaign.
     #[must_use]
-    pub fn describe(&self) -> String {
+    pub fn describe(&self, folder: &str) -> String {
         let mut text = format!(
             "{}: {} of {} runs, {} done\n",
             self.campaign, self.runs, self.runs_planned, self.runs_done
         );
         for failure in self.failures.iter().take(10) {
-            let Failure {
-                reason,
-                runs,
-                first_run,
-            } = failure;
-            let _ = writeln!(text, "  {runs} failed, run {first_run} first: {reason}");
+            let Failure { reason, runs, .. } = failure;
+            let _ = writeln!(text, "  {runs} failed: {reason}");
+            let replay = failure.replay.replace(FOLDER, folder);
+            let _ = writeln!(text, "    first with {}", failure.first_inputs.join(" "));
+            let _ = writeln!(text, "    `{replay}`");
         }
         let width = self
             .metrics
@@ -297,7 +294,11 @@ impl CampaignSummary {
                     );
                 }
             }
-            let _ = writeln!(text, ", from {} to {}", shown(least), shown(most));
+            let _ = write!(text, ", from {} to {}", shown(least), shown(most));
+            if metric.done_without > 0 {
+                let _ = write!(text, "; {} runs were done without", metric.done_without);
+            }
+            text.push('\n');
         }
         for found in &self.rank_correlations {
             if let Some(spearman) = found.spearman {
@@ -308,8 +309,41 @@ impl CampaignSummary {
                 );
             }
         }
+        for found in &self.sobol_indices {
+            if let Some(first) = &found.first_order {
+                let _ = write!(text, "  Sobol index {}", part(first));
+                if let Some(total) = &found.total {
+                    let _ = write!(text, ", in all {}", part(total));
+                }
+                let SobolIndex { field, metric, .. } = found;
+                let _ = writeln!(text, " of {field} on {metric}");
+            }
+        }
+        if let Some(most) = self.sobol_indices.iter().max_by_key(|found| found.left_out)
+            && most.left_out > 0
+        {
+            let all = most.samples + most.left_out;
+            let of = if most.total.is_some() {
+                "base samples"
+            } else {
+                "runs"
+            };
+            let SobolIndex {
+                left_out, metric, ..
+            } = most;
+            let _ = writeln!(
+                text,
+                "  {left_out} of {all} {of} lack {metric}, and are left out of its Sobol indices"
+            );
+        }
         text
     }
+}
+
+/// A part of a variance with its interval.
+fn part(estimate: &Estimate) -> String {
+    let [low, high] = estimate.interval_95;
+    format!("{:.3} ({low:.3} to {high:.3})", estimate.value)
 }
 
 #[cfg(test)]

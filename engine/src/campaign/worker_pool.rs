@@ -1,6 +1,6 @@
 //! Many jobs on some threads, their results in the order in which they come.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use crossbeam_channel::bounded;
@@ -14,20 +14,25 @@ const WAITING: usize = 256;
 /// # Errors
 /// What `take` refused with.
 pub fn do_all<T: Send, E>(
-    indices: &[u64],
+    indices: impl Iterator<Item = u64> + Send,
     workers: usize,
     job: impl Fn(u64) -> T + Sync,
     mut take: impl FnMut(T) -> Result<(), E>,
 ) -> Result<(), E> {
-    let next = AtomicUsize::new(0);
+    let indices = Mutex::new(indices);
+    let next = || {
+        // What may have panicked is a job, not who holds the lock.
+        let mut indices = indices.lock().unwrap_or_else(PoisonError::into_inner);
+        indices.next()
+    };
     thread::scope(|scope| {
         let (sender, receiver) = bounded(WAITING);
-        for _ in 0..workers.clamp(1, indices.len().max(1)) {
+        for _ in 0..workers.max(1) {
             let (sender, next, job) = (sender.clone(), &next, &job);
             scope.spawn(move || {
-                while let Some(index) = indices.get(next.fetch_add(1, Ordering::Relaxed)) {
+                while let Some(index) = next() {
                     // Nobody takes results any more.
-                    if sender.send(job(*index)).is_err() {
+                    if sender.send(job(index)).is_err() {
                         break;
                     }
                 }
@@ -44,11 +49,10 @@ mod tests {
 
     #[test]
     fn every_job_is_done_once() {
-        let indices: Vec<u64> = (0..1000).collect();
         for workers in [1, 2, 5] {
             let mut found = Vec::new();
             let done: Result<(), ()> = do_all(
-                &indices,
+                0..1000,
                 workers,
                 |k| k * k,
                 |square| {
@@ -61,7 +65,7 @@ mod tests {
             assert!(
                 found
                     .iter()
-                    .zip(&indices)
+                    .zip(0..1000)
                     .all(|(square, k)| *square == k * k)
             );
             assert_eq!(found.len(), 1000);
@@ -70,10 +74,9 @@ mod tests {
 
     #[test]
     fn a_refusal_ends_the_work() {
-        let indices: Vec<u64> = (0..100_000).collect();
         let mut taken = 0;
         let done = do_all(
-            &indices,
+            0..100_000,
             2,
             |k| k,
             |_| {

@@ -106,14 +106,13 @@ impl<'a> Evaluator<'a> {
             let absent = (0..runs).filter(|run| !self.records.contains_key(&(key.clone(), *run)));
             missing.extend(absent.map(|run| (key, *design, run)));
         }
-        let numbers: Vec<u64> = (0..missing.len() as u64).collect();
         let (search, simulator) = (self.search, self.simulator);
         let job = |number: u64| {
             let (_, design, run) = missing[number as usize];
             (number, search.run(simulator, design, run))
         };
         do_all(
-            &numbers,
+            0..missing.len() as u64,
             self.workers,
             job,
             |(number, record): (u64, Record)| -> Result<(), CampaignError> {

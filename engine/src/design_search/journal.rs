@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use super::definition::DesignSearch;
 use crate::campaign::CampaignError;
-use crate::campaign::record::{Record, fingerprint};
+use crate::campaign::record::{Record, RecordLine, fingerprint};
 
 /// Name of the journal.
 pub const JOURNAL: &str = "runs.journal";
@@ -48,7 +48,8 @@ fn of_line(line: &str, metrics: usize) -> Option<(String, Record)> {
         return None;
     }
     let (key, record) = content.split_once('\t')?;
-    Some((key.to_owned(), Record::of_line(record, metrics, 0)?))
+    let record = RecordLine::of_line(record, (metrics, 0))?;
+    Some((key.to_owned(), record.record()))
 }
 
 /// The records in a text, and the bytes of it that are whole lines.

@@ -8,7 +8,7 @@ use super::searching::SearchOutcome;
 use super::summary::{SearchSummary, summarise_search};
 use crate::campaign::CampaignError;
 use crate::campaign::comma_separated::quoted;
-use crate::campaign::results::write_whole;
+use crate::campaign::paired_table::write_whole;
 use crate::plugin::Simulator;
 use crate::recording::number::number_text;
 use crate::run_folder::scene_as_run;
@@ -33,7 +33,7 @@ pub fn write_search_results(
 ) -> Result<SearchSummary, CampaignError> {
     let write = |name: &str, text: &str| {
         let path = search.folder.join(name);
-        write_whole(&path, text).map_err(|error| CampaignError::unwritten(&path, &error))
+        write_whole(&path, text)
     };
     write(EVALUATIONS_FILE, &evaluation_table(search, outcome))?;
     let best = outcome

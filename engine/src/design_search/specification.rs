@@ -256,6 +256,7 @@ impl SearchSpec {
             about: self.about.clone(),
             scene: self.scene.clone(),
             runs: if self.is_once() { Some(1) } else { self.runs },
+            base_samples: None,
             seed: self.seed,
             plan: self.plan.clone(),
             set: self.set.clone(),

@@ -7,7 +7,7 @@ use super::frame::{Frame, ResultSink};
 use super::parquet_table::{ColumnKind, ColumnSpec, ParquetTable};
 
 const fn column(name: &'static str, kind: ColumnKind, unit: &'static str) -> ColumnSpec {
-    ColumnSpec { name, kind, unit }
+    ColumnSpec::fixed(name, kind, unit)
 }
 
 const fn number(name: &'static str, unit: &'static str) -> ColumnSpec {

@@ -3,13 +3,14 @@
 //! A file has its footer, without which nothing reads it, only once it is finished: a run that is killed leaves
 //! none. Who needs rows on the way writes CSV.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
-use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int32Type};
+use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int32Type, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
@@ -26,27 +27,43 @@ const GROUP: usize = 1 << 16;
 pub enum ColumnKind {
     /// Text, such as names.
     Text,
-    /// Whole numbers.
+    /// Whole numbers of 32 bits.
     Count,
+    /// Whole numbers from 0 of 64 bits, each of which may be missing.
+    Whole,
     /// Numbers, each of which may be missing.
     Number,
 }
 
 /// A column of a table.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ColumnSpec {
     /// Its name, with its unit.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// What it holds.
     pub kind: ColumnKind,
     /// The unit, for the file's metadata; empty where there is none.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
+}
+
+impl ColumnSpec {
+    /// A column whose name and unit do not depend on what is run.
+    #[must_use]
+    pub const fn fixed(name: &'static str, kind: ColumnKind, unit: &'static str) -> Self {
+        Self {
+            name: Cow::Borrowed(name),
+            kind,
+            unit: Cow::Borrowed(unit),
+        }
+    }
 }
 
 /// The values of a column that wait.
 enum Held {
     Text(Vec<ByteArray>),
     Count(Vec<i32>),
+    /// The bits of values, and for every row whether it has one.
+    Whole(Vec<i64>, Vec<i16>),
     /// Values, and for every row whether it has one.
     Number(Vec<f64>, Vec<i16>),
 }
@@ -67,6 +84,19 @@ impl ParquetTable {
     /// # Errors
     /// As the file system.
     pub fn create(path: &Path, name: &str, columns: &[ColumnSpec]) -> io::Result<Self> {
+        Self::with_units(path, name, columns, &[])
+    }
+
+    /// As [`Self::create`]; `more` are names and units that stand beside those of the columns.
+    ///
+    /// # Errors
+    /// As the file system.
+    pub fn with_units(
+        path: &Path,
+        name: &str,
+        columns: &[ColumnSpec],
+        more: &[(String, String)],
+    ) -> io::Result<Self> {
         let fields = columns.iter().map(|column| field(column).map(Arc::new));
         let fields = fields.collect::<Result<Vec<_>, _>>().map_err(refused)?;
         let schema = Type::group_type_builder(name).with_fields(fields).build();
@@ -75,7 +105,7 @@ impl ParquetTable {
             .set_created_by(format!("aerobot {VERSION}"))
             .set_key_value_metadata(Some(vec![KeyValue::new(
                 "units".to_owned(),
-                units(columns),
+                units(columns, more),
             )]))
             .build();
         let file = File::create(path)?;
@@ -108,6 +138,19 @@ impl ParquetTable {
         match &mut self.held[self.next] {
             Held::Count(values) => values.push(i32::try_from(value).unwrap_or(i32::MAX)),
             other => other.skip(),
+        }
+        self.next += 1;
+        self
+    }
+
+    /// Gives the next column of this row a whole number of 64 bits, or none.
+    pub fn whole(&mut self, value: Option<u64>) -> &mut Self {
+        match (&mut self.held[self.next], value) {
+            (Held::Whole(values, given), Some(value)) => {
+                values.push(value.cast_signed());
+                given.push(1);
+            }
+            (other, _) => other.skip(),
         }
         self.next += 1;
         self
@@ -174,6 +217,7 @@ impl Held {
         match kind {
             ColumnKind::Text => Self::Text(Vec::new()),
             ColumnKind::Count => Self::Count(Vec::new()),
+            ColumnKind::Whole => Self::Whole(Vec::new(), Vec::new()),
             ColumnKind::Number => Self::Number(Vec::new(), Vec::new()),
         }
     }
@@ -183,7 +227,7 @@ impl Held {
         match self {
             Self::Text(values) => values.push(ByteArray::from("")),
             Self::Count(values) => values.push(0),
-            Self::Number(_, given) => given.push(0),
+            Self::Whole(_, given) | Self::Number(_, given) => given.push(0),
         }
     }
 
@@ -206,6 +250,12 @@ impl Held {
                 typed.write_batch(values, None, None)?;
                 values.clear();
             }
+            Self::Whole(values, given) => {
+                let typed = column.typed::<Int64Type>();
+                typed.write_batch(values, Some(given), None)?;
+                values.clear();
+                given.clear();
+            }
             Self::Number(values, given) => {
                 let typed = column.typed::<DoubleType>();
                 typed.write_batch(values, Some(given), None)?;
@@ -225,19 +275,28 @@ fn field(column: &ColumnSpec) -> Result<Type, ParquetError> {
             Some(LogicalType::String),
         ),
         ColumnKind::Count => (Physical::INT32, Repetition::REQUIRED, None),
+        ColumnKind::Whole => (
+            Physical::INT64,
+            Repetition::OPTIONAL,
+            Some(LogicalType::integer(64, false)),
+        ),
         ColumnKind::Number => (Physical::DOUBLE, Repetition::OPTIONAL, None),
     };
-    Type::primitive_type_builder(column.name, physical)
+    Type::primitive_type_builder(&column.name, physical)
         .with_repetition(repetition)
         .with_logical_type(logical)
         .build()
 }
 
-/// Columns with their units, as JSON.
-fn units(columns: &[ColumnSpec]) -> String {
-    let units = columns.iter().filter(|column| !column.unit.is_empty());
+/// Columns with their units, and what else has one, as JSON.
+fn units(columns: &[ColumnSpec], more: &[(String, String)]) -> String {
+    let units = columns.iter().map(|column| (&*column.name, &*column.unit));
+    let more = more
+        .iter()
+        .map(|(name, unit)| (name.as_str(), unit.as_str()));
+    let units = units.chain(more).filter(|(_, unit)| !unit.is_empty());
     let units: serde_json::Map<String, serde_json::Value> = units
-        .map(|column| (column.name.to_owned(), column.unit.into()))
+        .map(|(name, unit)| (name.to_owned(), unit.into()))
         .collect();
     serde_json::Value::Object(units).to_string()
 }
