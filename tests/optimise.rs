@@ -30,7 +30,10 @@ const THROW: &str = r#"(
             Motion: (velocity_m_s: (10, 0, 10)),
         ),
     },
-    run: (duration_s: 10, output_every_s: 1, integrator: Adaptive(relative_tolerance: 1e-11)),
+    run: (
+        duration_s: 10, output_every_s: 1, integrator: Adaptive(relative_tolerance: 1e-11),
+        record: (channels: All),
+    ),
 )
 "#;
 
@@ -209,7 +212,7 @@ const GUSTS: &str = r#"
     variables: {"entities.tether.Tether.length_m": (from: 100, to: 1000)},
     objective: Minimise(Mass(["tether"])),
     constraints: {
-        "swing_90_rad": (of: Percentile(metric: "swing_rad", percent: 90), at_most: 0.004),
+        "swing_90_rad": (of: Percentile(metric: "swing_rad", percent: 90), at_most: 0.008),
     },
     runs: 12,
     seed: 3,
@@ -250,7 +253,7 @@ fn gusts_by_a_campaign_and_by_a_grid() {
         "{swing_rad} {again_rad}"
     );
     assert!(
-        swing_rad <= 0.004 && swing_rad > 0.004 * 0.999,
+        swing_rad <= 0.008 && swing_rad > 0.008 * 0.999,
         "{swing_rad}"
     );
     let mass_kg = 1440.0 * std::f64::consts::PI * 0.25 * 0.002 * 0.002 * length_m;
@@ -258,7 +261,7 @@ fn gusts_by_a_campaign_and_by_a_grid() {
     let grid = (0..=18).map(|k| 100.0 + 50.0 * f64::from(k));
     let kept = grid
         .into_iter()
-        .find(|length_m| swing_90_rad(&scratch, *length_m) <= 0.004);
+        .find(|length_m| swing_90_rad(&scratch, *length_m) <= 0.008);
     let shortest_m = kept.unwrap();
     assert!(
         shortest_m >= length_m && shortest_m - length_m <= 50.0,

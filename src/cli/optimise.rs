@@ -118,8 +118,8 @@ fn search_with_bar(
         bar.set_length(progress.most);
         bar.set_position(progress.evaluations);
         bar.set_message(progress.best.map_or_else(
-            || "none feasible yet".to_owned(),
-            |best| format!("best {best:.6}"),
+            || format!("{} runs, none feasible yet", progress.new_runs),
+            |best| format!("{} runs, best {best:.6}", progress.new_runs),
         ));
         new_runs = progress.new_runs;
     });

@@ -37,6 +37,7 @@ pub(super) struct Evaluator<'a> {
     /// Their places by the keys of their designs.
     places: BTreeMap<String, usize>,
     new_runs: u64,
+    best_objective: Option<f64>,
     progress: &'a mut dyn FnMut(Progress),
 }
 
@@ -59,6 +60,7 @@ impl<'a> Evaluator<'a> {
             evaluations: Vec::new(),
             places: BTreeMap::new(),
             new_runs: 0,
+            best_objective: None,
             progress,
         })
     }
@@ -91,7 +93,11 @@ impl<'a> Evaluator<'a> {
                 found,
             });
         }
-        self.tell();
+        let best = self.best().and_then(|place| self.evaluations.get(place));
+        let best = best.and_then(|best| best.found.as_ref().ok());
+        self.best_objective = best.map(|found| found.objective);
+        let progress = self.how_far();
+        (self.progress)(progress);
         let places = designs
             .iter()
             .map(|design| self.places.get(&design.key()).copied());
@@ -106,6 +112,7 @@ impl<'a> Evaluator<'a> {
             let absent = (0..runs).filter(|run| !self.records.contains_key(&(key.clone(), *run)));
             missing.extend(absent.map(|run| (key, *design, run)));
         }
+        let mut progress = self.how_far();
         let (search, simulator) = (self.search, self.simulator);
         let job = |number: u64| {
             let (_, design, run) = missing[number as usize];
@@ -120,6 +127,8 @@ impl<'a> Evaluator<'a> {
                 self.journal.add(key, &record)?;
                 self.records.insert((key.clone(), run), record);
                 self.new_runs += 1;
+                progress.new_runs = self.new_runs;
+                (self.progress)(progress);
                 Ok(())
             },
         )
@@ -136,15 +145,13 @@ impl<'a> Evaluator<'a> {
         judge(specification, design, scene, &runs.collect::<Vec<_>>())
     }
 
-    fn tell(&mut self) {
-        let best = self.best().and_then(|place| self.evaluations.get(place));
-        let best = best.and_then(|best| best.found.as_ref().ok());
-        (self.progress)(Progress {
+    fn how_far(&self) -> Progress {
+        Progress {
             evaluations: self.evaluations.len() as u64,
             most: self.most,
             new_runs: self.new_runs,
-            best: best.map(|found| found.objective),
-        });
+            best: self.best_objective,
+        }
     }
 
     /// The place of the best feasible design; the first of equals.

@@ -39,7 +39,8 @@ impl Scales {
         margins.collect()
     }
 
-    /// What a local search is told of an evaluation. One that failed is as bad as the worst of the others in
+    /// What a local search is told of an evaluation: it is to keep off the limits by the tolerance, since it comes to
+    /// the edge of what it is told from either side. One that failed is as bad as the worst of the others in
     /// everything, so that planes through it are not as steep as they could be.
     pub(super) fn told(
         &self,
@@ -49,7 +50,9 @@ impl Scales {
     ) -> Told {
         let of = |found: &Found| Told {
             objective: search.objective.sign() * found.objective / self.objective,
-            margins: self.margins_of(search, found),
+            margins: (self.margins_of(search, found).into_iter())
+                .map(|margin| margin - search.search.tolerance)
+                .collect(),
         };
         if let Some(Ok(found)) = evaluations.get(place).map(|of| &of.found) {
             return of(found);
