@@ -124,7 +124,7 @@ fn refuse(source: &Source, diagnostics: &[Diagnostic]) -> SceneError {
 fn is_missing_for(diagnostic: &Diagnostic, paths: &[String]) -> bool {
     paths.iter().any(|path| {
         let field = path.split('.').next().unwrap_or_default();
-        diagnostic.path.is_none()
+        diagnostic.path.as_deref().is_none_or(str::is_empty)
             && diagnostic
                 .message
                 .ends_with(&format!("needs the field `{field}`"))

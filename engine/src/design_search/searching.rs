@@ -2,8 +2,9 @@
 //!
 //! All of it follows from the file: local searches go in step, each asks for one design, and all of these are
 //! evaluated before any goes on. What is promised of the result: it was evaluated, it keeps to every constraint as
-//! evaluated, and no better design was. That it is the best of all is promised only where there is one variable, and
-//! one place where the constraints change between kept and broken: it is then within the tolerance of that place.
+//! evaluated, and no better design was. That it is the best of all is promised only of one variable along which the
+//! objective only rises or only falls, with one place where the constraints change between kept and broken, once a
+//! design of either side was evaluated: it is then within the tolerance of that place.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::thread;
