@@ -168,8 +168,8 @@ fn ranks_take_choices() {
     assert_eq!(ranked_index(&pairs[..FEWEST_RUNS - 1], 1, 0), None);
 }
 
-/// Why a plan of Sobol's sequence gets no such estimate: what follows in one field is opposite in another, and a
-/// field without any influence seems to have a large one.
+/// Why a plan of Sobol's sequence gets no such estimate: what follow each other in one field tend to be opposite in
+/// another, and the interval of a field without any influence misses zero by far.
 #[test]
 fn neighbours_in_a_sequence_are_not_independent() {
     let sequence = Sobol::new(4, 2);
@@ -177,5 +177,5 @@ fn neighbours_in_a_sequence_are_not_independent() {
         .map(|point| (sequence.coordinate(point, 0), sequence.coordinate(point, 1)))
         .collect();
     let found = ranked_index(&pairs, 1, 0).unwrap();
-    assert!(found.value.abs() > 0.3, "{found:?}");
+    assert!(found.interval_95[1] < -0.1, "{found:?}");
 }
