@@ -120,17 +120,6 @@ fn refuse(source: &Source, diagnostics: &[Diagnostic]) -> SceneError {
     }
 }
 
-/// Whether a field is said to be missing in which something is wrong.
-fn is_missing_for(diagnostic: &Diagnostic, paths: &[String]) -> bool {
-    paths.iter().any(|path| {
-        let field = path.split('.').next().unwrap_or_default();
-        diagnostic.path.as_deref().is_none_or(str::is_empty)
-            && diagnostic
-                .message
-                .ends_with(&format!("needs the field `{field}`"))
-    })
-}
-
 /// The path of an entry of a map as it stands in reports: `vary."run.seed"`.
 pub(crate) fn entry_path(map: &str, name: &str) -> String {
     let path = FieldPath::default()
@@ -169,11 +158,6 @@ pub(crate) fn read_as<T: DeserializeOwned>(
             let mut diagnostics = found.err().unwrap_or_default();
             diagnostics.retain(|diagnostic| !echoes(diagnostic, &in_text));
             diagnostics.extend(in_text);
-            let paths: Vec<String> = diagnostics
-                .iter()
-                .filter_map(|of| of.path.clone())
-                .collect();
-            diagnostics.retain(|diagnostic| !is_missing_for(diagnostic, &paths));
             Err(refuse(&source, &diagnostics))
         }
     }

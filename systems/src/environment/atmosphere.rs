@@ -44,10 +44,6 @@ pub struct OutsideAtmosphere {
 /// A model of the air over altitude. Numbers are finite, densities, temperatures and scale heights
 /// positive: whoever builds one from a file checks that.
 #[derive(Debug, Clone, PartialEq)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a world has one, and a box costs every look-up"
-)]
 pub enum Atmosphere {
     /// No air: density and pressure zero.
     Vacuum,
