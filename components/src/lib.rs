@@ -11,6 +11,7 @@ pub mod copies;
 pub mod derivatives;
 pub mod environment;
 pub mod events;
+pub mod fixed_wing;
 pub mod gust;
 pub mod inertia;
 pub mod run;

@@ -6,6 +6,7 @@ pub mod denoc;
 pub mod dynamics;
 pub mod environment;
 pub mod fault;
+pub mod fixed_wing;
 pub mod forces;
 pub mod gust_fit;
 pub mod instruments;
