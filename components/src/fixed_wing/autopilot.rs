@@ -83,7 +83,7 @@ impl Default for AutopilotSpec {
             period_s: 0.01,
             roll: LoopSpec::of(20.0, 0.707),
             course: LoopSpec::of(1.0, 0.9),
-            pitch: LoopSpec::of(16.0, 0.707),
+            pitch: LoopSpec::of(20.0, 0.707),
             altitude: LoopSpec::of(0.6, 0.9),
             airspeed: LoopSpec::of(1.5, 0.9),
             yaw_damper: YawDamper {
@@ -122,6 +122,22 @@ impl AutopilotSpec {
                     );
                 }
             });
+        }
+        for (name, one, other_name, other) in [
+            ("course", self.course, "roll", self.roll),
+            ("airspeed", self.airspeed, "pitch", self.pitch),
+            ("altitude", self.altitude, "pitch", self.pitch),
+            ("altitude", self.altitude, "airspeed", self.airspeed),
+        ] {
+            let near = |a: f64, b: f64| (a / b - 1.0).abs() < 0.01;
+            if near(one.frequency_rad_s, other.frequency_rad_s) && near(one.damping, other.damping)
+            {
+                report.add(
+                    name,
+                    format!("`{name}` and `{other_name}` cannot have the same pair of poles"),
+                    "let one of them be slower",
+                );
+            }
         }
         report.within("yaw_damper", |report| {
             report.non_negative("gain_s", self.yaw_damper.gain_s);

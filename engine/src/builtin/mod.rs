@@ -5,6 +5,7 @@ pub mod bodies;
 pub mod channels;
 pub mod environment;
 pub mod events;
+pub mod fixed_wing;
 pub mod gusts;
 pub mod links;
 pub mod recorder;
@@ -25,6 +26,7 @@ pub(crate) fn register(simulator: &mut Simulator) {
         .add_plugin(&environment::EnvironmentPlugin)
         .add_plugin(&bodies::BodiesPlugin)
         .add_plugin(&aerodynamics::AerodynamicsPlugin)
+        .add_plugin(&fixed_wing::FixedWingPlugin)
         .add_plugin(&tethers::TethersPlugin)
         .add_plugin(&torsion::TorsionPlugin)
         .add_plugin(&winches::WinchesPlugin)

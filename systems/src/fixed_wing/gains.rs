@@ -138,8 +138,9 @@ impl Design<'_> {
         over((1.0 - late.0, -late.1), (s.0 * t, s.1 * t))
     }
 
-    /// Transfer functions at s with the inner loops closed whose gains are known, and the yaw damper. An
-    /// altitude or course loop is never inside another.
+    /// Transfer functions at s with the inner loops of the same axis closed whose gains are known, and the yaw
+    /// damper. (A loop of the other axis that has its poles at s too would hide these.) An altitude or course
+    /// loop is never inside another.
     fn seen(
         &self,
         s: Complex,
@@ -175,6 +176,11 @@ impl Design<'_> {
             output,
             gain,
         });
+        let is_lateral = |input| matches!(input, Input::Aileron | Input::Rudder);
+        let same_axis = loops
+            .into_iter()
+            .filter(|feedback| is_lateral(feedback.input) == is_lateral(input));
+        let loops: Vec<Feedback> = same_axis.collect();
         self.model.transfer(s, &loops, input, outputs)
     }
 }
@@ -207,8 +213,7 @@ fn two_gains(
     // Elevators pitch down when positive: there the gain is negative, and the sign is that of G at rest.
     let is_integral = matches!(name, "course" | "altitude" | "airspeed");
     if is_integral && !(gains.proportional > 0.0 && gains.second > 0.0) {
-        let reason =
-            "it would have to push the wrong way; a slower loop, or faster ones inside, may do";
+        let reason = "it would have to push the wrong way; faster loops inside of it, or another bandwidth, may do";
         return Err(refused(name, of, reason));
     }
     Ok(gains)

@@ -94,8 +94,8 @@ fn every_loop_has_the_bandwidth_and_damping_it_is_asked_for() {
     };
     other.roll = with(14.0, 0.8);
     other.course = with(0.7, 0.7);
-    other.pitch = with(12.0, 0.8);
-    other.altitude = with(0.5, 0.9);
+    other.pitch = with(24.0, 0.8);
+    other.altitude = with(0.5, 0.8);
     other.airspeed = with(2.0, 0.7);
     for spec in [shipped, other] {
         for (stepped, asked) in [
