@@ -2,6 +2,7 @@
 //! under them. Nothing here knows when it runs; the engine orders it.
 
 pub mod clock;
+pub mod control;
 pub mod denoc;
 pub mod dynamics;
 pub mod environment;

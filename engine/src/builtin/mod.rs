@@ -1,5 +1,6 @@
 //! The built-in families of components and systems, each a plugin like any user's.
 
+pub mod actuators;
 pub mod aerodynamics;
 pub mod bodies;
 pub mod channels;
@@ -9,6 +10,7 @@ pub mod fixed_wing;
 pub mod gusts;
 pub mod links;
 pub mod recorder;
+pub mod sails;
 pub mod slack_events;
 pub mod tethers;
 pub mod torsion;
@@ -27,6 +29,8 @@ pub(crate) fn register(simulator: &mut Simulator) {
         .add_plugin(&bodies::BodiesPlugin)
         .add_plugin(&aerodynamics::AerodynamicsPlugin)
         .add_plugin(&fixed_wing::FixedWingPlugin)
+        .add_plugin(&actuators::ActuatorsPlugin)
+        .add_plugin(&sails::SailsPlugin)
         .add_plugin(&tethers::TethersPlugin)
         .add_plugin(&torsion::TorsionPlugin)
         .add_plugin(&winches::WinchesPlugin)

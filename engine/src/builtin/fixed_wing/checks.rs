@@ -4,6 +4,7 @@ use aerobot_components::body::{Body, Fixed, Moving};
 use aerobot_components::fixed_wing::FixedWing;
 use aerobot_components::inertia::InertiaShape;
 use aerobot_components::scene_component::FieldReport;
+use aerobot_components::tether::Tether;
 
 use crate::scene::Scene;
 use crate::scene::checks::meant;
@@ -18,6 +19,17 @@ pub(super) fn check(scene: &Scene, report: &mut FieldReport) {
                 "a fixed-wing drone needs an inertia, and this body is a point",
                 "the Aerosonde has `inertia: Tensor(xx_kg_m2: 0.8244, yy_kg_m2: 1.135, zz_kg_m2: 1.759, \
                  xz_kg_m2: 0.1204)`",
+            );
+        }
+        let is_held = |tether: &Tether| tether.from.0 == entity.name || tether.to.0 == entity.name;
+        if let Some((tether, _)) = scene.with::<Tether>().find(|(_, tether)| is_held(tether)) {
+            report.add(
+                &tether.path::<Tether>(),
+                format!(
+                    "`{}` is a fixed-wing drone, and its trim knows no tether",
+                    entity.name
+                ),
+                "tie the tether to another body",
             );
         }
         let Some((field, name)) = drone.guidance.names() else {

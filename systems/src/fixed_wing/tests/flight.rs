@@ -70,7 +70,6 @@ impl Flight {
     pub(super) fn starting_at(flier: Flier, airspeed_m_s: f64, spec: AutopilotSpec) -> Self {
         let trim = flier.trim(level(airspeed_m_s)).unwrap();
         let gains = design(&LinearModel::about(&flier, &trim), &spec).unwrap();
-        println!("{gains:?}");
         Self {
             flier,
             autopilot: Autopilot {
