@@ -13,7 +13,9 @@
 //! and north-east-down. Source: Beard and McLain (2012), ch. 6.
 //!
 //! Integrals are of the trapezium, and stand still while what they feed is at a limit and would be driven further.
-//! An altitude far away is approached at a limited rate of climb.
+//! An altitude far away is approached at a limited rate of climb. Where the throttle is open and the airspeed falls
+//! short of what is asked for by 3 m/s, speed goes before height: the largest pitch is taken back, by 5 deg/s, until
+//! it does not.
 //!
 //! Assumptions: the drone knows its state, its airspeed, and the wind averaged over a time.
 
@@ -27,6 +29,11 @@ use glam::{DQuat, DVec3};
 use super::flight_trim::TrimmedFlight;
 use super::gains::Gains;
 use super::north_east_down::roll_pitch_yaw;
+
+/// Airspeed that may be missing while the throttle is open, m/s.
+const MISSING_AIRSPEED_M_S: f64 = 3.0;
+/// Rate at which the largest pitch is taken back, rad/s.
+const HOLDING_BACK_RAD_S: f64 = 0.087;
 
 /// What the autopilot senses, forward-right-down and north-east-down.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -86,6 +93,10 @@ pub struct Memory {
     pub steady_wind_m_s: DVec3,
     /// The altitude that is asked for now, on the way to where it is to be, m.
     altitude_m: Option<f64>,
+    /// By how much the largest pitch is taken back for the sake of airspeed, rad.
+    held_back_rad: f64,
+    /// Whether the pitch asked for is at a limit.
+    pub at_pitch_limit: bool,
 }
 
 /// The integral of an error.
@@ -157,6 +168,7 @@ impl Autopilot {
         let airspeed = through_air.length();
         let angles = roll_pitch_yaw(sensed.attitude);
         let roll_c = self.roll_command(memory, sensed, airspeed, command.lateral);
+        self.hold_back(memory, command.airspeed_m_s - airspeed);
         let pitch_c = self.pitch_command(memory, sensed, command.vertical);
         let trim = &self.trim.controls;
         let (gains, rate) = (&self.gains, sensed.rate_rad_s);
@@ -220,11 +232,12 @@ impl Autopilot {
 
     fn pitch_command(&self, memory: &mut Memory, sensed: &Sensed, command: VerticalCommand) -> f64 {
         let (trim, limit) = (self.trim.pitch_rad, self.spec.pitch_limit_deg.to_radians());
-        let (least, most) = (trim - limit, trim + limit);
+        let (least, most) = (trim - limit, trim + limit - memory.held_back_rad);
         let (wanted_m, rate_m_s) = match command {
             VerticalCommand::Pitch(pitch) => {
                 memory.altitude = Integral::default();
                 memory.altitude_m = None;
+                memory.at_pitch_limit = sign_beyond(pitch, least, most) != 0.0;
                 return pitch.clamp(least, most);
             }
             VerticalCommand::Altitude(altitude, rate) => (altitude, rate),
@@ -241,6 +254,7 @@ impl Autopilot {
         let base = trim + gains.proportional * error;
         let beyond = sign_beyond(base + gains.second * memory.altitude.value, least, most);
         let integral = memory.altitude.advance(error, period_s, beyond);
+        memory.at_pitch_limit = beyond != 0.0;
         (base + gains.second * integral).clamp(least, most)
     }
 }

@@ -1,8 +1,9 @@
 //! How a pursuit stands: on the way, on station, without hope, in the end game, past the target.
 //!
 //! A target is out of reach when, for a time, one of these holds without a break: keeping its station takes more
-//! airspeed than level flight has, and the drone falls behind; the throttle is open and the drone falls behind; or
-//! it takes less airspeed than level flight has. It is in reach again when none has held for as long.
+//! airspeed than level flight has, and the drone falls behind; the throttle is open, or the pitch at its limit, and
+//! the drone falls behind; or it takes less airspeed than level flight has. It is in reach again when none has held
+//! for as long.
 
 /// How a pursuit stands; the numbers are those of the channel `chase_state`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,6 +30,8 @@ pub enum Hopeless {
     TooSlow,
     /// The throttle is open, and the station draws away.
     OutOfThrust,
+    /// The pitch is at its limit, and the station draws away.
+    TooSteep,
 }
 
 impl Hopeless {
@@ -39,6 +42,7 @@ impl Hopeless {
             Self::TooFast => "target unreachable: faster than the drone in level flight",
             Self::TooSlow => "target unreachable: slower than the drone can fly",
             Self::OutOfThrust => "target unreachable: out of thrust",
+            Self::TooSteep => "target unreachable: climbs or sinks too steeply",
         }
     }
 }
@@ -58,6 +62,8 @@ pub struct Seen {
     pub closing_m_s: f64,
     /// The throttle.
     pub throttle: f64,
+    /// Whether the pitch asked for is at a limit.
+    pub at_pitch_limit: bool,
 }
 
 /// What is asked of a pursuit.
@@ -163,6 +169,8 @@ fn hopeless(seen: &Seen, rules: &Rules) -> Option<Hopeless> {
         Some(Hopeless::TooFast)
     } else if seen.throttle >= OPEN && falls_behind {
         Some(Hopeless::OutOfThrust)
+    } else if seen.at_pitch_limit && falls_behind {
+        Some(Hopeless::TooSteep)
     } else {
         None
     }
@@ -186,6 +194,7 @@ mod tests {
         range_m: 80.0,
         closing_m_s: 1.0,
         throttle: 0.8,
+        at_pitch_limit: false,
     };
 
     /// Goes on for a time in s and collects what is told.
@@ -227,8 +236,14 @@ mod tests {
             required_m_s: 4.0,
             ..NEAR
         };
+        let too_steep = Seen {
+            at_pitch_limit: true,
+            parting_m_s: 0.5,
+            ..NEAR
+        };
         for (seen, reason) in [
             (out_of_thrust, Hopeless::OutOfThrust),
+            (too_steep, Hopeless::TooSteep),
             (too_slow, Hopeless::TooSlow),
         ] {
             let told = advance(&mut Chase::default(), seen, &RULES, 30.0);

@@ -245,6 +245,7 @@ impl Guide<'_> {
             range_m,
             closing_m_s: -from_target.dot(against) / range_m.max(1e-9),
             throttle: self.throttle,
+            at_pitch_limit: self.flying.memory.at_pitch_limit,
         }
     }
 
