@@ -5,15 +5,19 @@
 //! up; z is the altitude above the mean radius of Venus (6051.8 km). A body frame has its origin at
 //! the body's centre of mass. Quaternions rotate body to inertial, scalar last.
 
+pub mod actuator;
 pub mod aerodynamics;
 pub mod body;
+pub mod control;
 pub mod copies;
 pub mod derivatives;
 pub mod environment;
 pub mod events;
+pub mod fixed_wing;
 pub mod gust;
 pub mod inertia;
 pub mod run;
+pub mod sail;
 pub mod sampling;
 pub mod scene_component;
 pub mod segment;

@@ -10,6 +10,7 @@ use aerobot_systems::instruments::energy_guard::mechanical_energy;
 use aerobot_systems::integration::Trajectory;
 use bevy_ecs::world::World;
 
+use crate::builtin::actuators;
 use crate::builtin::channels::find_supports;
 use crate::builtin::tethers::has_links;
 use crate::coordinates::Coordinates;
@@ -37,6 +38,7 @@ impl Simulator {
     pub fn build(&self, scene: &Scene) -> Result<Simulation, SceneError> {
         let refuse = |error| scene.refuse(error);
         let mut world = build_world(self, scene).map_err(refuse)?;
+        actuators::bind(&mut world, scene).map_err(refuse)?;
         let layout = lay_out_state(&mut world);
         let mut schedules = Schedules::new(self, scene, &mut world)?;
         placement::place(&mut world, schedules.forces(), scene).map_err(refuse)?;

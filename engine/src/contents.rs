@@ -6,7 +6,7 @@ use aerobot_components::state::{Mass, Position};
 use aerobot_components::tether::{Tether, TetherParts};
 use aerobot_systems::environment::EnvironmentModel;
 
-use crate::builtin::gusts;
+use crate::builtin::{fixed_wing, gusts, sails};
 use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::world::SceneEntities;
@@ -40,6 +40,8 @@ impl Simulation {
         ));
         let wind = &self.world().resource::<EnvironmentModel>().wind;
         lines.extend(gusts::describe(&wind.gusts().collect::<Vec<_>>()));
+        lines.extend(fixed_wing::describe(self.world()));
+        lines.extend(sails::describe(self.world(), scene));
         let stable = self.stable_step();
         if stable.step_s.is_finite() {
             lines.push(format!(

@@ -14,6 +14,7 @@ use bevy_ecs::resource::Resource;
 use bevy_ecs::system::SystemId;
 use bevy_ecs::world::World;
 
+use crate::builtin::actuators::commands_have_changed;
 use crate::event_location;
 use crate::linearisation::Linearisation;
 use crate::sequence::Sequence;
@@ -195,6 +196,10 @@ fn advance(world: &mut World, integration: &mut Integration) -> Result<(), StepF
     let state = &mut **state;
     if std::mem::take(&mut world.resource_mut::<Discontinuity>().0) {
         state.gather(world, &mut trajectory.state);
+        trajectory.switch();
+    }
+    if commands_have_changed(world) {
+        world.resource_mut::<Clock>().interval_start_s = trajectory.time_s;
         trajectory.switch();
     }
     begin_interval(world, trajectory);

@@ -92,8 +92,7 @@ impl Edges {
     }
 }
 
-/// Set by a system that has changed something at once (a command, the state itself), so that the
-/// rates of the current state are found anew.
+/// Set by a system that has changed the state at once, so that it is gathered and its rates are found anew.
 #[derive(Resource, Clone, Copy, Debug, Default)]
 pub struct Discontinuity(pub bool);
 

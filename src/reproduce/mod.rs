@@ -3,6 +3,7 @@
 //! A program that wants the numbers and not the text calls the module of a case, such as
 //! [`towing::compare`].
 
+pub mod chase;
 pub mod performance;
 pub mod towing;
 pub mod yaw;
@@ -40,6 +41,7 @@ pub fn cases() -> Vec<Box<dyn Case>> {
         Box::new(performance::Performance),
         Box::new(yaw::Yaw),
         Box::new(towing::Towing),
+        Box::new(chase::Chase),
     ]
 }
 

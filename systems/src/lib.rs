@@ -2,10 +2,12 @@
 //! under them. Nothing here knows when it runs; the engine orders it.
 
 pub mod clock;
+pub mod control;
 pub mod denoc;
 pub mod dynamics;
 pub mod environment;
 pub mod fault;
+pub mod fixed_wing;
 pub mod forces;
 pub mod gust_fit;
 pub mod instruments;

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use aerobot_components::body::{Anchor, Body};
 use aerobot_components::run::ChannelSelection;
+use aerobot_components::sail::Sail;
 use aerobot_components::scene_component::FieldReport;
 use aerobot_components::state::{Air, FirstOrderState, Inertia, Position};
 use aerobot_components::tether::{Attachment, Tether, TetherParts};
@@ -19,6 +20,10 @@ use aerobot_systems::instruments::channel_log::{BuiltInChannels, ChannelLog};
 use aerobot_systems::instruments::energy::{
     KINETIC, MECHANICAL, POTENTIAL, WORK, WorkIntegral, energy, nonconservative_power,
 };
+use aerobot_systems::instruments::sail::{
+    RUDDER, RUDDER_COMMAND, RUDDER_INCIDENCE, RUDDER_LIFT, SAIL_DRAG, WING_INCIDENCE, WING_LIFT,
+    YAW_MOMENT, actuators, sail,
+};
 use aerobot_systems::instruments::swing::{SWING, SWING_X, SWING_Y, Support, swing};
 use aerobot_systems::instruments::twist::{TORSION, TWIST, twist};
 use aerobot_systems::instruments::winch::{LINE_OUT, WINCH_POWER, WINCH_WORK, winch};
@@ -27,6 +32,7 @@ use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::system::{IntoSystem, Res};
 use bevy_ecs::world::World;
 
+use super::actuators::is_actuated;
 use super::recorder::Recorder;
 use super::torsion::has_torsion;
 use crate::plugin::{Plugin, Simulator};
@@ -36,6 +42,22 @@ use crate::schedule::Phase;
 use crate::world::{SceneEntities, next_spawn_order};
 
 const BODY_CHANNELS: [&str; 6] = [AIRSPEED, TILT, HEADING, SWING, SWING_X, SWING_Y];
+const SAIL_CHANNELS: [&str; 14] = [
+    AIRSPEED,
+    TILT,
+    HEADING,
+    SWING,
+    SWING_X,
+    SWING_Y,
+    WING_INCIDENCE,
+    RUDDER_INCIDENCE,
+    WING_LIFT,
+    RUDDER_LIFT,
+    SAIL_DRAG,
+    YAW_MOMENT,
+    RUDDER,
+    RUDDER_COMMAND,
+];
 const TETHER_CHANNELS: [&str; 2] = [TENSION_FROM, TENSION_TO];
 const TWISTED_TETHER_CHANNELS: [&str; 4] = [TENSION_FROM, TENSION_TO, TWIST, TORSION];
 const WINCH_CHANNELS: [&str; 5] = [TENSION_FROM, TENSION_TO, WINCH_POWER, WINCH_WORK, LINE_OUT];
@@ -69,6 +91,10 @@ impl Plugin for ChannelsPlugin {
                     .run_if(channels_due)
             })
             .add_systems_if(Phase::Observe, has_torsion, || twist.run_if(channels_due))
+            .add_systems_for::<Sail, _, _>(Phase::Observe, || sail.run_if(channels_due))
+            .add_systems_if(Phase::Observe, is_actuated, || {
+                actuators.run_if(channels_due)
+            })
             .add_systems_for::<Winch, _, _>(Phase::Observe, || winch.run_if(channels_due))
             .add_systems_if(Phase::Observe, records_energy, || {
                 energy.run_if(channels_due)
@@ -85,6 +111,8 @@ fn known_channels(entity: &SceneEntity) -> &'static [&'static str] {
             (false, true) => &WINCH_CHANNELS,
             (true, true) => &TWISTED_WINCH_CHANNELS,
         }
+    } else if entity.has::<Sail>() {
+        &SAIL_CHANNELS
     } else if entity.has::<Body>() {
         &BODY_CHANNELS
     } else {
@@ -254,6 +282,7 @@ fn hanging(world: &World, parts: &TetherParts) -> Option<Hanging> {
 pub(crate) fn is_built_in(channel: &str) -> bool {
     [
         &BODY_CHANNELS[..],
+        &SAIL_CHANNELS,
         &TWISTED_TETHER_CHANNELS,
         &WINCH_CHANNELS,
         &SYSTEM_CHANNELS,

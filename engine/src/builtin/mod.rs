@@ -1,13 +1,16 @@
 //! The built-in families of components and systems, each a plugin like any user's.
 
+pub mod actuators;
 pub mod aerodynamics;
 pub mod bodies;
 pub mod channels;
 pub mod environment;
 pub mod events;
+pub mod fixed_wing;
 pub mod gusts;
 pub mod links;
 pub mod recorder;
+pub mod sails;
 pub mod slack_events;
 pub mod tethers;
 pub mod torsion;
@@ -25,6 +28,9 @@ pub(crate) fn register(simulator: &mut Simulator) {
         .add_plugin(&environment::EnvironmentPlugin)
         .add_plugin(&bodies::BodiesPlugin)
         .add_plugin(&aerodynamics::AerodynamicsPlugin)
+        .add_plugin(&fixed_wing::FixedWingPlugin)
+        .add_plugin(&actuators::ActuatorsPlugin)
+        .add_plugin(&sails::SailsPlugin)
         .add_plugin(&tethers::TethersPlugin)
         .add_plugin(&torsion::TorsionPlugin)
         .add_plugin(&winches::WinchesPlugin)

@@ -2,6 +2,7 @@
 
 use aerobot_components::aerodynamics::DisplacedVolume;
 use aerobot_components::body::{Anchor, Moving};
+use aerobot_components::fixed_wing::FixedWing;
 use aerobot_components::tether::{Tether, TetherNode, TetherParts};
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::environment::atmosphere::Atmosphere;
@@ -46,7 +47,8 @@ pub(crate) fn find(world: &World, scene: &Scene) -> Vec<TetheredSystem> {
     let mut systems = Vec::new();
     for entity in &scene.entities {
         let name = entity.name.as_str();
-        if seen.contains(&name) || entity.has::<Tether>() {
+        // A drone flies, and has a trim of its own.
+        if seen.contains(&name) || entity.has::<Tether>() || entity.has::<FixedWing>() {
             continue;
         }
         let together = tethered_together(scene, name);

@@ -1,6 +1,7 @@
 //! A steady state as it is told: read from the world once everything stands there.
 
 use aerobot_components::body::Anchor;
+use aerobot_components::fixed_wing::FixedWing;
 use aerobot_components::segment::{SegmentGeometry, Tension};
 use aerobot_components::state::{
     Acceleration, AngularAcceleration, Attitude, Force, Inertia, Position, StateIndex, Torque,
@@ -12,10 +13,11 @@ use aerobot_systems::clock::Clock;
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::instruments::attitude::{heading_rad, tilt_rad};
 use bevy_ecs::entity::Entity;
-use bevy_ecs::query::With;
+use bevy_ecs::query::{With, Without};
 use bevy_ecs::world::World;
 
 use super::{Residual, Trim, TrimmedBody, TrimmedEnd, TrimmedSystem, TrimmedTether};
+use crate::builtin::fixed_wing;
 use crate::placement::{self, SteadySystem};
 use crate::world::{EntityName, SceneEntities};
 
@@ -69,6 +71,10 @@ fn system(world: &World, found: &SteadySystem) -> TrimmedSystem {
 
 fn body(world: &World, entity: Entity) -> Option<TrimmedBody> {
     let attitude = world.get::<Attitude>(entity)?.0;
+    // A drone flies; it has a trim of its own, and starts in it.
+    if world.get::<FixedWing>(entity).is_some() {
+        return None;
+    }
     Some(TrimmedBody {
         name: name(world, entity),
         is_anchor: world.get::<Anchor>(entity).is_some(),
@@ -159,7 +165,7 @@ fn residual(world: &mut World) -> Residual {
     let (mut force, mut linear, mut angular) =
         (Largest::default(), Largest::default(), Largest::default());
     let mut parts =
-        world.query_filtered::<(&EntityName, &Force, &Acceleration), With<StateIndex>>();
+        world.query_filtered::<(&EntityName, &Force, &Acceleration), (With<StateIndex>, Without<FixedWing>)>();
     for (name, left, acceleration) in parts.iter(world) {
         force.see(left.0.length(), name);
         linear.see(acceleration.0.length(), name);
@@ -167,7 +173,7 @@ fn residual(world: &mut World) -> Residual {
     let mut torque_n_m = 0.0_f64;
     let mut turning = world.query_filtered::<
         (&EntityName, &AngularAcceleration, &Torque),
-        (With<StateIndex>, With<Inertia>),
+        (With<StateIndex>, With<Inertia>, Without<FixedWing>),
     >();
     for (name, acceleration, torque) in turning.iter(world) {
         angular.see(acceleration.0.length(), name);
@@ -187,7 +193,7 @@ fn residual(world: &mut World) -> Residual {
 
 fn notes(world: &World) -> Vec<String> {
     let wind = &world.resource::<EnvironmentModel>().wind;
-    let mut notes = Vec::new();
+    let mut notes = fixed_wing::describe(world);
     if wind.gusts().next().is_some() {
         notes.push(format!(
             "the wind has stochastic gusts: this is the steady state in them as they are at {} s",

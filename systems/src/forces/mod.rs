@@ -4,8 +4,10 @@
 
 pub mod body_drag;
 pub mod buoyancy;
+pub mod lifting_surface;
 pub mod line_twist;
 pub mod reeled_spring;
+pub mod sail;
 pub mod segment_drag;
 pub mod spring;
 pub mod torsion;

@@ -1,0 +1,5 @@
+//! Trim, linear model, loops and guidance of the drone, without a world.
+
+mod flight;
+mod loops;
+mod trim;
