@@ -3,6 +3,7 @@
 
 pub mod clock;
 pub mod denoc;
+pub mod docking;
 pub mod dynamics;
 pub mod environment;
 pub mod fault;
@@ -13,5 +14,6 @@ pub mod integration;
 pub mod linearised_motion;
 pub mod modes;
 pub mod nonlinear_solver;
+pub mod rotorcraft;
 pub mod stochastic;
 pub mod towed_cable;
