@@ -7,7 +7,7 @@ use aerobot_components::docking::{Docking, Latch};
 use aerobot_components::rotorcraft::Rotorcraft;
 use aerobot_components::run::ChannelSelection;
 use aerobot_components::scene_component::FieldReport;
-use aerobot_components::state::{Air, FirstOrderState, Inertia, Position};
+use aerobot_components::state::{Air, FirstOrderState, Inertia};
 use aerobot_components::tether::{Attachment, Tether, TetherParts};
 use aerobot_components::winch::Winch;
 use aerobot_systems::clock::Clock;
@@ -32,6 +32,7 @@ use bevy_ecs::world::World;
 use super::recorder::Recorder;
 use super::torsion::has_torsion;
 use super::{docking, rotorcraft};
+use crate::placement::attachment_position;
 use crate::plugin::{Plugin, Simulator};
 use crate::scene::source::nearest;
 use crate::scene::{Scene, SceneEntity, SetupError};
@@ -249,7 +250,11 @@ struct Hanging {
 
 fn hanging(world: &World, parts: &TetherParts) -> Option<Hanging> {
     let (first, last) = (*parts.points.first()?, *parts.points.last()?);
-    let height = |point| world.get::<Position>(point).map(|position| position.0.z);
+    // Where nothing had to be found, attachments have not been placed yet.
+    let height = |point| {
+        let end = world.get::<Attachment>(point)?;
+        Some(attachment_position(world, end.carrier, end.offset_m).z)
+    };
     let rise = height(first)? - height(last)?;
     let (above, below) = if rise >= 0.0 {
         (first, last)
