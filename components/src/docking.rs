@@ -188,9 +188,10 @@ pub enum Navigation {
         observer_rad_s: f64,
         /// .. from this distance on, m; they fall with one over the distance beyond it.
         observer_near_m: f64,
-        /// The named stream of random numbers, in the seed of the run.
+        /// The stream of random numbers under the seed of the run; its place among the drones of the scene unless
+        /// given.
         #[serde(default)]
-        stream: u32,
+        stream: Option<u32>,
     },
 }
 

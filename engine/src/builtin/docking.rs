@@ -23,6 +23,7 @@ use aerobot_systems::instruments::attitude::heading_rad;
 use aerobot_systems::instruments::channel_log::{BuiltInChannels, ChannelLog};
 use bevy_ecs::component::Component;
 use bevy_ecs::entity::Entity;
+use bevy_ecs::query::Has;
 use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::system::{Query, Res, ResMut};
 use bevy_ecs::world::World;
@@ -44,7 +45,7 @@ const CONTACT_SPEED: &str = "contact_speed_m_s";
 const LATCH_FORCE: &str = "latch_force_n";
 const LATCH_TORQUE: &str = "latch_torque_n_m";
 
-/// The channels of a latch. The last three are recorded once it has closed, the last two while it is.
+/// The channels of a latch. The speed of contact is zero until it has closed, what it carries while it is open.
 pub(crate) const LATCH_CHANNELS: [&str; 7] = [
     DISTANCE,
     CLOSING_SPEED,
@@ -96,7 +97,7 @@ struct LatchSensor(Entity);
 struct ContactSpeed(f64);
 
 fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
-    for (entity, latch) in scene.with::<Latch>() {
+    for (place, (entity, latch)) in (0..).zip(scene.with::<Latch>()) {
         let names = world.resource::<SceneEntities>();
         let (Some(body), Some(target)) = (names.get(&entity.name), names.get(&latch.to)) else {
             continue;
@@ -110,7 +111,7 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
         if let Some(docking) = docking {
             let attitude = world.get::<Attitude>(body).copied().unwrap_or_default();
             world.entity_mut(body).insert((
-                PortObserver::new(docking.navigation, scene.run.seed),
+                PortObserver::new(docking.navigation, scene.run.seed, place),
                 Guidance::new(heading_rad(attitude.0)),
             ));
         }
@@ -314,7 +315,7 @@ fn record(
             (CLOSING_SPEED, Some(apart.closing_speed_m_s)),
             (LATERAL_ERROR, Some(apart.lateral_error_m)),
             (MISALIGNMENT, Some(apart.misalignment_rad)),
-            (CONTACT_SPEED, contact.map(|speed| speed.0)),
+            (CONTACT_SPEED, Some(contact.map_or(0.0, |speed| speed.0))),
         ];
         for (channel, value) in values {
             if let (Some(value), true) = (value, channels.has(channel)) {
@@ -328,15 +329,19 @@ fn record(
 fn record_loads(
     mut log: ResMut<ChannelLog>,
     riders: Query<(
-        (Entity, &BuiltInChannels, &Docked),
+        (Entity, &BuiltInChannels, &LatchState, Has<Docked>),
         (&Mass, &Inertia, &DockingPort),
         (&Attitude, &AngularVelocity),
         (&Acceleration, &AngularAcceleration),
         (&Force, &Torque),
     )>,
 ) {
-    for ((entity, channels, _), what, turn, motion, forces) in &riders {
-        let load = LatchLoad::of(what, turn, motion, forces);
+    for ((entity, channels, _, is_docked), what, turn, motion, forces) in &riders {
+        let load = if is_docked {
+            LatchLoad::of(what, turn, motion, forces)
+        } else {
+            LatchLoad::default()
+        };
         for (channel, value) in [(LATCH_FORCE, load.force_n), (LATCH_TORQUE, load.torque_n_m)] {
             if channels.has(channel) {
                 log.record(entity, channel, value.length_squared().sqrt());

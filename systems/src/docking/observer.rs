@@ -59,12 +59,12 @@ pub struct PortObserver {
 }
 
 impl PortObserver {
-    /// With the random numbers of a seed.
+    /// With the random numbers of a seed; `place` names their stream where the navigation does not.
     #[must_use]
-    pub fn new(navigation: Navigation, seed: u64) -> Self {
+    pub fn new(navigation: Navigation, seed: u64, place: u32) -> Self {
         let stream = match navigation {
-            Navigation::Perfect => 0,
-            Navigation::Measured { stream, .. } => stream,
+            Navigation::Perfect => place,
+            Navigation::Measured { stream, .. } => stream.unwrap_or(place),
         };
         Self {
             navigation,
@@ -200,7 +200,7 @@ mod tests {
             range_m: 1000.0,
             observer_rad_s: 3.0,
             observer_near_m: 100.0,
-            stream: 0,
+            stream: None,
         }
     }
 
@@ -217,7 +217,7 @@ mod tests {
         at: impl Fn(f64) -> DVec3 + Copy,
         ticks: u32,
     ) -> Vec<(f64, PortEstimate)> {
-        let mut observer = PortObserver::new(navigation, 7);
+        let mut observer = PortObserver::new(navigation, 7, 0);
         let mut seen = Vec::new();
         for tick in 0..ticks {
             let time_s = f64::from(tick) * 0.05;
@@ -248,7 +248,7 @@ mod tests {
     /// e / b^k is nothing.
     #[test]
     fn all_three_poles_are_where_they_should_be() {
-        let mut observer = PortObserver::new(measured(0.0, 0.0), 7);
+        let mut observer = PortObserver::new(measured(0.0, 0.0), 7, 0);
         let own = PortMotion::default();
         let errors: Vec<f64> = (0..40)
             .map(|tick| {
