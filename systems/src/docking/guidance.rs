@@ -4,11 +4,12 @@
 //! there until the error has been small for long enough; contact along the axis n of the port, with
 //!
 //! ```text
-//! p_r = p + g n,  v_r = v + g' n,  a_r = a,   g' = -V_c max(0, 1 - e / e_gate)
+//! p_r = p + g n,  v_r = v + g' n + g n',  a_r = a,   g' = -V_c max(0, 1 - e / e_gate)
 //! ```
 //!
 //! p, v, a the port as far as it is known, g the gap (m), V_c the closing speed (m/s), e the lateral error (m): far
-//! beside the axis the drone waits until it is on it. An approach is missed if e passes its limit, if the plane of the
+//! beside the axis the drone waits until it is on it. n' is what is seen of the turning of the axis, smoothed over a
+//! second, without which the drone would trail behind a port that turns. An approach is missed if e passes its limit, if the plane of the
 //! port is passed, or if it takes too long; then the drone backs off to the standoff and tries again. What cannot be
 //! reached is told, with the reason, and the drone drifts with the air.
 //!
@@ -37,6 +38,8 @@ const STATION_LOST: f64 = 3.0;
 const LEAST_GAP_M: f64 = -0.3;
 /// A drone whose port is this far behind the plane of the other has passed it, m.
 const PASSED_M: f64 = -0.1;
+/// Time over which the turning of the port's axis is smoothed, s.
+const SMOOTHED_S: f64 = 1.0;
 /// An axis whose horizontal part is less than this says nothing of a heading.
 const LEAST_HORIZONTAL: f64 = 0.1;
 
@@ -123,6 +126,8 @@ pub struct Guidance {
     steady_s: f64,
     gap_m: f64,
     heading_rad: f64,
+    axis: Option<DVec3>,
+    axis_rate_per_s: DVec3,
 }
 
 /// What a tick of the guidance goes by.
@@ -174,6 +179,7 @@ impl Guidance {
             heading_rad: self.heading_rad,
             point_m: port.at_m,
         };
+        self.watch_axis(view);
         let Some(seen) = view.seen else {
             self.without_sight(docking, view.time_s);
             return drift;
@@ -201,11 +207,26 @@ impl Guidance {
         };
         FlightReference {
             position_m: Some(seen.motion.position_m + gap_m * seen.motion.axis),
-            velocity_m_s: seen.motion.velocity_m_s + gap_rate_m_s * seen.motion.axis,
+            velocity_m_s: seen.motion.velocity_m_s
+                + gap_rate_m_s * seen.motion.axis
+                + gap_m * self.axis_rate_per_s,
             acceleration_m_s2: seen.acceleration_m_s2,
             heading_rad: self.heading_rad,
             point_m: port.at_m,
         }
+    }
+
+    fn watch_axis(&mut self, view: &View) {
+        let axis = view.seen.map(|seen| seen.motion.axis);
+        self.axis_rate_per_s = match (self.axis, axis) {
+            (Some(before), Some(now)) => {
+                let rate_per_s = (now - before) / view.period_s;
+                let share = view.period_s / (view.period_s + SMOOTHED_S);
+                self.axis_rate_per_s.lerp(rate_per_s, share)
+            }
+            _ => DVec3::ZERO,
+        };
+        self.axis = axis;
     }
 
     fn without_sight(&mut self, docking: &Docking, time_s: f64) {

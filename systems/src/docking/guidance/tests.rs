@@ -125,3 +125,21 @@ fn headings_put_ports_face_to_face() {
     assert!((turned - DVec3::X).length() < 1e-15);
     assert_eq!(heading(DVec3::NEG_Z, DVec3::X), None);
 }
+
+/// Of an axis that turns at 0.05 rad/s the place in front moves at 0.05 x 6 m/s, which the reference says.
+#[test]
+fn the_place_in_front_moves_with_an_axis_that_turns() {
+    let mut guidance = Guidance::new(0.0);
+    let mut reference = FlightReference::default();
+    for tick in 0..200 {
+        let time_s = f64::from(tick) * 0.05;
+        let mut view = view(time_s, DVec3::new(-50.0, 0.0, 0.0));
+        let angle = 0.05 * time_s;
+        if let Some(seen) = &mut view.seen {
+            seen.motion.axis = DVec3::new(-angle.cos(), -angle.sin(), 0.0);
+        }
+        reference = guidance.tick(&docking(), &PORT, &view);
+    }
+    assert!((reference.velocity_m_s.length() - 0.3).abs() < 1e-3);
+    assert!((reference.heading_rad - 0.05 * 199.0 * 0.05).abs() < 1e-12);
+}
