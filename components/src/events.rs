@@ -70,6 +70,11 @@ pub enum Action {
         /// The body.
         body: String,
     },
+    /// The latch of a body opens, and lets it go from what it is docked to.
+    Undock {
+        /// The body, which has a `Latch`.
+        body: String,
+    },
     /// A winch pays out or reels in.
     Reel {
         /// The tether, which has a `Winch`.
@@ -132,7 +137,7 @@ impl Action {
                 "segments count from 1 at `from`, and there is no segment 0",
                 "",
             ),
-            Self::Cut { .. } | Self::Release { .. } => {}
+            Self::Cut { .. } | Self::Release { .. } | Self::Undock { .. } => {}
             Self::Reel {
                 rate_m_s,
                 length_m,

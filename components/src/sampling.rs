@@ -20,6 +20,12 @@ impl Sampling {
         Self { period_s, tick: 0 }
     }
 
+    /// Time between samples, s.
+    #[must_use]
+    pub fn period_s(&self) -> f64 {
+        self.period_s
+    }
+
     /// The time of the next sample, s.
     #[must_use]
     pub fn next_s(&self) -> f64 {

@@ -4,6 +4,7 @@
 pub mod clock;
 pub mod control;
 pub mod denoc;
+pub mod docking;
 pub mod dynamics;
 pub mod environment;
 pub mod fault;
@@ -15,5 +16,6 @@ pub mod integration;
 pub mod linearised_motion;
 pub mod modes;
 pub mod nonlinear_solver;
+pub mod rotorcraft;
 pub mod stochastic;
 pub mod towed_cable;

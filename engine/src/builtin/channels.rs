@@ -3,10 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use aerobot_components::body::{Anchor, Body};
+use aerobot_components::docking::{Docking, Latch};
+use aerobot_components::rotorcraft::Rotorcraft;
 use aerobot_components::run::ChannelSelection;
 use aerobot_components::sail::Sail;
 use aerobot_components::scene_component::FieldReport;
-use aerobot_components::state::{Air, FirstOrderState, Inertia, Position};
+use aerobot_components::state::{Air, FirstOrderState, Inertia};
 use aerobot_components::tether::{Attachment, Tether, TetherParts};
 use aerobot_components::winch::Winch;
 use aerobot_systems::clock::Clock;
@@ -35,6 +37,8 @@ use bevy_ecs::world::World;
 use super::actuators::is_actuated;
 use super::recorder::Recorder;
 use super::torsion::has_torsion;
+use super::{docking, rotorcraft};
+use crate::placement::attachment_position;
 use crate::plugin::{Plugin, Simulator};
 use crate::scene::source::nearest;
 use crate::scene::{Scene, SceneEntity, SetupError};
@@ -103,7 +107,22 @@ impl Plugin for ChannelsPlugin {
 }
 
 /// The channels that exist on an entity of a scene.
-fn known_channels(entity: &SceneEntity) -> &'static [&'static str] {
+fn known_channels(entity: &SceneEntity) -> Vec<&'static str> {
+    let mut known = own_channels(entity).to_vec();
+    if entity.has::<Rotorcraft>() {
+        known.extend(rotorcraft::CHANNELS);
+    }
+    if entity.has::<Latch>() {
+        known.extend(docking::LATCH_CHANNELS);
+    }
+    if entity.has::<Docking>() {
+        known.extend(docking::GUIDANCE_CHANNELS);
+    }
+    known
+}
+
+/// Those of a tether or a body.
+fn own_channels(entity: &SceneEntity) -> &'static [&'static str] {
     if let Some(tether) = entity.get::<Tether>() {
         match (tether.torsion.is_some(), entity.has::<Winch>()) {
             (false, false) => &TETHER_CHANNELS,
@@ -126,7 +145,7 @@ fn records_energy(scene: &Scene) -> bool {
 }
 
 /// Whether built-in channels are due at the time of the accepted state.
-fn channels_due(clock: Res<Clock>, recorder: Res<Recorder>) -> bool {
+pub(super) fn channels_due(clock: Res<Clock>, recorder: Res<Recorder>) -> bool {
     recorder.channels_due(clock.time_s)
 }
 
@@ -138,7 +157,7 @@ fn check_names(scene: &Scene, report: &mut FieldReport) {
         let known = match scene.entity(name) {
             Some(entity) if !entity.complete => continue,
             Some(entity) => known_channels(entity),
-            None if name == "system" => &SYSTEM_CHANNELS,
+            None if name == "system" => SYSTEM_CHANNELS.to_vec(),
             None => continue,
         };
         for channel in wanted
@@ -168,7 +187,7 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
         let wanted = wanted(
             &scene.run.record.channels,
             &entity.name,
-            known_channels(entity),
+            &known_channels(entity),
         );
         let mut spawned = world.entity_mut(id);
         let is_body = entity.has::<Body>();
@@ -200,7 +219,7 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
 fn wanted(
     selection: &ChannelSelection,
     name: &str,
-    known: &'static [&'static str],
+    known: &[&'static str],
 ) -> BTreeSet<&'static str> {
     match selection {
         ChannelSelection::None => BTreeSet::new(),
@@ -259,7 +278,11 @@ struct Hanging {
 
 fn hanging(world: &World, parts: &TetherParts) -> Option<Hanging> {
     let (first, last) = (*parts.points.first()?, *parts.points.last()?);
-    let height = |point| world.get::<Position>(point).map(|position| position.0.z);
+    // Where nothing had to be found, attachments have not been placed yet.
+    let height = |point| {
+        let end = world.get::<Attachment>(point)?;
+        Some(attachment_position(world, end.carrier, end.offset_m).z)
+    };
     let rise = height(first)? - height(last)?;
     let (above, below) = if rise >= 0.0 {
         (first, last)
@@ -286,6 +309,9 @@ pub(crate) fn is_built_in(channel: &str) -> bool {
         &TWISTED_TETHER_CHANNELS,
         &WINCH_CHANNELS,
         &SYSTEM_CHANNELS,
+        &rotorcraft::CHANNELS,
+        &docking::LATCH_CHANNELS,
+        &docking::GUIDANCE_CHANNELS,
     ]
     .iter()
     .any(|channels| channels.contains(&channel))

@@ -2,6 +2,7 @@
 //! ends there; the rows of that time show what follows.
 
 use aerobot_components::body::Body;
+use aerobot_components::docking::Latch;
 use aerobot_components::events::{Action, Condition, EventSpec};
 use aerobot_components::scene_component::FieldReport;
 use aerobot_components::segment::Tension;
@@ -169,6 +170,17 @@ fn check_action(scene: &Scene, action: &Action, report: &mut FieldReport) {
             let is_held = scene.with::<Tether>().any(|(_, tether)| holds(tether));
             if scene.entity(body).is_some_and(|entity| entity.complete) && !is_held {
                 report.add("body", format!("no tether holds `{body}`"), "");
+            }
+        }
+        Action::Undock { body } => {
+            check_body(scene, "body", body, report);
+            let has_none = |entity: &SceneEntity| entity.complete && !entity.has::<Latch>();
+            if scene.entity(body).is_some_and(has_none) {
+                report.add(
+                    "body",
+                    format!("`{body}` has no latch"),
+                    "give it one: `Latch: (to: ..)`",
+                );
             }
         }
         Action::Reel {

@@ -4,6 +4,7 @@ pub mod actuators;
 pub mod aerodynamics;
 pub mod bodies;
 pub mod channels;
+pub mod docking;
 pub mod environment;
 pub mod events;
 pub mod fixed_wing;
@@ -11,6 +12,7 @@ pub mod gusts;
 pub mod links;
 pub mod recorder;
 pub mod sails;
+pub mod rotorcraft;
 pub mod slack_events;
 pub mod tethers;
 pub mod torsion;
@@ -34,8 +36,11 @@ pub(crate) fn register(simulator: &mut Simulator) {
         .add_plugin(&tethers::TethersPlugin)
         .add_plugin(&torsion::TorsionPlugin)
         .add_plugin(&winches::WinchesPlugin)
+        .add_plugin(&rotorcraft::RotorcraftPlugin)
+        .add_plugin(&docking::DockingPlugin)
         .add_plugin(&bodies::MotionPlugin)
         .add_plugin(&links::LinksPlugin)
+        .add_plugin(&docking::RidersPlugin)
         .add_plugin(&winches::WinchPowerPlugin)
         .add_plugin(&channels::ChannelsPlugin)
         .add_plugin(&slack_events::SlackEventsPlugin)

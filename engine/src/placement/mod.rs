@@ -159,7 +159,7 @@ fn take_as_origin(world: &mut World) {
 }
 
 /// Position of an attachment on a carrier as it stands, inertial frame, m.
-fn attachment_position(world: &World, carrier: Entity, offset_m: DVec3) -> DVec3 {
+pub(crate) fn attachment_position(world: &World, carrier: Entity, offset_m: DVec3) -> DVec3 {
     let position = world
         .get::<Position>(carrier)
         .map_or(DVec3::ZERO, |position| position.0);

@@ -6,6 +6,7 @@
 
 mod cutting;
 mod dividing;
+mod latching;
 pub(crate) mod reeling;
 mod renumbering;
 
@@ -32,6 +33,8 @@ pub(crate) enum Change {
     Event(Action),
     /// What a winch does on its way, to the line of this entity.
     Winch(Entity, reeling::Turn),
+    /// The latch of this body closes.
+    Latch(Entity),
 }
 
 /// Makes changes and goes on from there; whether the run can.
@@ -45,6 +48,7 @@ pub(crate) fn apply(world: &mut World, changes: &[Change]) -> bool {
             match change {
                 Change::Event(action) => act(world, action),
                 Change::Winch(line, turn) => reeling::turn(world, *line, *turn),
+                Change::Latch(body) => latching::close(world, *body),
             }
         }
         match go_on(world, integration) {
@@ -65,6 +69,7 @@ fn act(world: &mut World, action: &Action) {
     match action {
         Action::Cut { tether, segment } => cutting::cut(world, tether, *segment),
         Action::Release { body } => cutting::release(world, body),
+        Action::Undock { body } => latching::open(world, body),
         Action::Reel {
             tether,
             rate_m_s,

@@ -7,8 +7,9 @@
 //! loads nothing. Reeling in, the far point loses mass at its own velocity and the attachment takes it up at
 //! that velocity: it is loaded by mu |r|/2 (v_far - v_near). Momentum is conserved in both.
 
+use aerobot_components::docking::Docked;
 use aerobot_components::segment::{KelvinVoigt, RigidLink};
-use aerobot_components::state::{FirstOrderState, Force, Mass, Velocity};
+use aerobot_components::state::{FirstOrderState, Force, Inertia, Mass, Velocity};
 use aerobot_components::tether::Attachment;
 use aerobot_components::winch::ReeledLine;
 use bevy_ecs::component::Component;
@@ -16,6 +17,7 @@ use bevy_ecs::query::{With, Without};
 use bevy_ecs::system::Query;
 
 use super::rigid_body::CarriedMass;
+use crate::docking::impact;
 
 /// Marks a body that carries an end of a reeled line, whose mass changes.
 #[derive(Component, Clone, Copy, Debug, Default)]
@@ -56,6 +58,7 @@ pub fn pay_out(
 /// Sums anew what bodies with a changing line carry.
 pub fn carry(
     ends: Query<(&Attachment, &Mass)>,
+    riders: Query<(&Docked, &Mass, &Inertia)>,
     mut carriers: Query<&mut CarriedMass, With<CarriesReeledLine>>,
 ) {
     for mut carried in &mut carriers {
@@ -64,6 +67,12 @@ pub fn carry(
     for (end, mass) in &ends {
         if let Ok(mut carried) = carriers.get_mut(end.carrier) {
             carried.add(mass.0, end.offset_m);
+        }
+    }
+    for (docked, mass, inertia) in &riders {
+        if let Ok(mut carried) = carriers.get_mut(docked.carrier) {
+            let rider = impact::carried(mass.0, inertia.0, docked.offset_m, docked.attitude);
+            *carried = carried.plus(&rider);
         }
     }
 }

@@ -6,6 +6,7 @@
 //! velocity of one end against the other. Rigid links store nothing.
 
 use aerobot_components::body::Anchor;
+use aerobot_components::docking::Docked;
 use aerobot_components::segment::{KelvinVoigt, RigidLink, SegmentGeometry};
 use aerobot_components::state::{
     Acceleration, AddedInertia, AngularVelocity, Attitude, Force, Inertia, Mass, Position,
@@ -46,6 +47,16 @@ struct Moving {
     )>,
 }
 
+/// A body that rides on another; the forces on it count with those on its carrier.
+#[derive(QueryData)]
+struct Rider {
+    docked: &'static Docked,
+    mass: &'static Mass,
+    position: &'static Position,
+    velocity: &'static Velocity,
+    spin: (&'static Inertia, &'static AngularVelocity),
+}
+
 /// The spring of a segment as it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StretchedSpring {
@@ -72,6 +83,7 @@ pub struct EnergySum<'w, 's> {
             &'static Velocity,
         ),
     >,
+    riders: Query<'w, 's, Rider>,
     anchors: Query<'w, 's, (), With<Anchor>>,
     segments: Query<'w, 's, (&'static KelvinVoigt, &'static SegmentGeometry), Without<RigidLink>>,
     torsions: Query<'w, 's, (&'static Torsion, &'static Twist)>,
@@ -97,6 +109,11 @@ impl EnergySum<'_, '_> {
         for (mass, _, velocity) in self.free_ends() {
             kinetic_j += 0.5 * mass.0 * velocity.0.length_squared();
         }
+        for rider in self.free_riders() {
+            kinetic_j += 0.5 * rider.mass.0 * rider.velocity.0.length_squared();
+            let (inertia, rate) = rider.spin;
+            kinetic_j += 0.5 * rate.0.dot(inertia.0 * rate.0);
+        }
         kinetic_j + self.links.as_ref().map_or(0.0, |links| links.kinetic_j())
     }
 
@@ -110,6 +127,9 @@ impl EnergySum<'_, '_> {
         }
         for (mass, position, _) in self.free_ends() {
             potential_j += mass.0 * gravity.potential_j_kg(position.0.z);
+        }
+        for rider in self.free_riders() {
+            potential_j += rider.mass.0 * gravity.potential_j_kg(rider.position.0.z);
         }
         for spring in self.springs() {
             potential_j += 0.5 * spring.stiffness_n_m * spring.stretch_m * spring.stretch_m;
@@ -141,6 +161,9 @@ impl EnergySum<'_, '_> {
         }
         for (mass, position, velocity) in self.free_ends() {
             power_w += lift_w(mass, position, velocity);
+        }
+        for rider in self.free_riders() {
+            power_w += lift_w(rider.mass, rider.position, rider.velocity);
         }
         // What the reactions of rods do goes into their kinetic energy.
         power_w
@@ -192,6 +215,13 @@ impl EnergySum<'_, '_> {
             (sum.0 + power.by_change_w, sum.1 + power.by_damper_w)
         };
         self.reels.iter().fold((0.0, 0.0), add)
+    }
+
+    /// The bodies that ride on what is free to move.
+    fn free_riders(&self) -> impl Iterator<Item = RiderItem<'_, '_>> {
+        self.riders
+            .iter()
+            .filter(|rider| !self.anchors.contains(rider.docked.carrier))
     }
 
     /// The masses of tethers that are carried by what is free to move.
