@@ -4,6 +4,7 @@
 //! [`towing::compare`].
 
 pub mod performance;
+pub mod sail;
 pub mod towing;
 pub mod yaw;
 
@@ -40,6 +41,7 @@ pub fn cases() -> Vec<Box<dyn Case>> {
         Box::new(performance::Performance),
         Box::new(yaw::Yaw),
         Box::new(towing::Towing),
+        Box::new(sail::SailCase),
     ]
 }
 
