@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::process::ExitCode;
 
-use aerobot_engine::modes::{Mode, Modes, ModesRequest};
+use aerobot_engine::modes::{ClosedLoop, Mode, Modes, ModesRequest};
 use aerobot_engine::plugin::Simulator;
 
 use super::ModesArguments;
@@ -56,6 +56,64 @@ fn describe(found: &Modes) -> String {
     }
     for words in &found.neutral {
         let _ = writeln!(text, "neutral: {words}");
+    }
+    for closed in &found.closed_loops {
+        text.push_str(&closed_loop(closed));
+    }
+    text
+}
+
+/// Slow modes of a closed loop that are printed.
+const PRINTED_OF_LOOP: usize = 8;
+
+fn closed_loop(closed: &ClosedLoop) -> String {
+    let word = if closed.is_stable() {
+        "stable"
+    } else {
+        "UNSTABLE"
+    };
+    let mut text = format!(
+        "closed loop of `{}` on `{}`, sampled every {} s, nothing cut: {word}\n",
+        closed.controller, closed.actuator, closed.period_s
+    );
+    let margins = &closed.margins;
+    let hz = |frequency: f64| significant(frequency / std::f64::consts::TAU, 4);
+    let gain = |found: Option<(f64, f64)>| {
+        found.map_or_else(
+            || "any".to_owned(),
+            |(factor, at)| format!("{} (at {} Hz)", significant(factor, 4), hz(at)),
+        )
+    };
+    let phase = margins.phase_rad.map_or_else(
+        || "any".to_owned(),
+        |(phase, at)| format!("{:.1} deg (at {} Hz)", phase.to_degrees(), hz(at)),
+    );
+    let _ = writeln!(
+        text,
+        "     at the command: gain may grow to x {}, fall to x {}; phase margin {phase}; |1 + L| at least {}",
+        gain(margins.gain_up),
+        margins
+            .gain_down
+            .map_or_else(|| "0".to_owned(), |found| gain(Some(found))),
+        significant(margins.distance, 3)
+    );
+    for (growth, turn) in closed.modes.iter().take(PRINTED_OF_LOOP) {
+        let rate = growth.hypot(*turn);
+        let _ = if *turn > 0.0 {
+            writeln!(
+                text,
+                "     {:>10} s  damping {:>9}",
+                significant(std::f64::consts::TAU / turn, 5),
+                ratio(-growth / rate)
+            )
+        } else {
+            let verb = if *growth > 0.0 { "grows" } else { "decays" };
+            writeln!(
+                text,
+                "     {verb} by a factor e in {} s",
+                significant(1.0 / growth.abs(), 5)
+            )
+        };
     }
     text
 }

@@ -5,6 +5,7 @@
 
 pub mod chase;
 pub mod performance;
+pub mod sail;
 pub mod towing;
 pub mod yaw;
 
@@ -41,6 +42,7 @@ pub fn cases() -> Vec<Box<dyn Case>> {
         Box::new(performance::Performance),
         Box::new(yaw::Yaw),
         Box::new(towing::Towing),
+        Box::new(sail::SailCase),
         Box::new(chase::Chase),
     ]
 }

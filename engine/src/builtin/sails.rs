@@ -26,7 +26,7 @@ pub const RUDDER_NAME: &str = "rudder";
 
 /// A sail that is held level turns about x and y as if it had this times its moment about z: what holds it
 /// gives way by no more than a torque over that.
-const HOLDING_INERTIA: f64 = 1e6;
+const HOLDING_INERTIA: f64 = 1e4;
 /// And swings back at this rate, rad/s, critically damped.
 const HOLDING_RATE_RAD_S: f64 = 10.0;
 

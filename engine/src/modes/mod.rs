@@ -1,6 +1,7 @@
 //! Small motions about the steady state of a scene: frequencies, damping, and who moves how.
 
 mod body_coordinates;
+mod closed_loop;
 mod displaced_forces;
 mod joint_coordinates;
 mod linear_motion;
@@ -10,6 +11,8 @@ mod neutral;
 mod participation;
 mod search;
 mod sites;
+
+pub use closed_loop::ClosedLoop;
 
 use crate::scene::{Scene, SceneError};
 use crate::simulation::Simulation;
@@ -60,6 +63,8 @@ pub struct Modes {
     pub modes: Vec<Mode>,
     /// What nothing restores, in words; no modes stand for it.
     pub neutral: Vec<String>,
+    /// The loops that controllers close.
+    pub closed_loops: Vec<ClosedLoop>,
     /// What was decided on the way, as sentences.
     pub notes: Vec<String>,
 }

@@ -8,9 +8,11 @@ use aerobot_systems::fault::Fault;
 use aerobot_systems::modes::Complex;
 use aerobot_systems::modes::cluster::separate;
 use aerobot_systems::modes::eigenmodes::{Eigenmode, Method, slowest};
+use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
 
 use super::body_coordinates;
+use super::closed_loop::{OpenLoop, has_loops, of_each_coordinate};
 use super::joint_coordinates::JointWorld;
 use super::linear_motion::LinearMotion;
 use super::naming;
@@ -61,6 +63,7 @@ pub(super) fn search(
             first_order_states: 0,
             modes: Vec::new(),
             neutral: Vec::new(),
+            closed_loops: Vec::new(),
             notes: Vec::new(),
         };
         let is_rigid = scene.run.formulation == Formulation::Denoc
@@ -139,7 +142,15 @@ fn of_bodies(
         .map(|mode| sites.motions(&mode.displacement))
         .collect();
     tell(&eigenmodes, motions, participants, found);
-    Ok(())
+    let displaced = |along: &[Complex<f64>]| Ok(sites.motions(along));
+    close_loops(
+        world,
+        (scene, sites),
+        (&motion, &first_order),
+        displaced,
+        found,
+    )
+    .map_err(|fault| refused(world, &fault))
 }
 
 fn of_links(
@@ -184,6 +195,53 @@ fn of_links(
         motions.push(moving.map_err(|fault| refused(links.world, &fault))?);
     }
     tell(&eigenmodes, motions, participants, found);
+    if !has_loops(scene) {
+        return Ok(());
+    }
+    let displaced = of_each_coordinate(basis.len(), |along| links.motions(&basis, sites, along));
+    let mut displaced = displaced
+        .map_err(|fault| refused(links.world, &fault))?
+        .into_iter();
+    let next = |_: &[Complex<f64>]| Ok(displaced.next().unwrap_or_default());
+    close_loops(
+        links.world,
+        (scene, sites),
+        (&motion, &first_order),
+        next,
+        found,
+    )
+    .map_err(|fault| refused(links.world, &fault))
+}
+
+/// Adds the loops that controllers close; `displaced` gives the motions of all sites along coordinates.
+fn close_loops(
+    world: &World,
+    (scene, sites): (&Scene, &Sites),
+    (motion, first_order): (&LinearMotion, &[Entity]),
+    displaced: impl FnMut(&[Complex<f64>]) -> Result<Vec<SiteMotion>, Fault>,
+    found: &mut Modes,
+) -> Result<(), Fault> {
+    if !has_loops(scene) {
+        return Ok(());
+    }
+    let LinearMotion::Dense(motion) = motion else {
+        found.notes.push(format!(
+            "loops of controllers are closed for at most {FEW} coordinates; use fewer nodes, or `Denoc`"
+        ));
+        return Ok(());
+    };
+    let displaced = of_each_coordinate(motion.mass.nrows(), displaced)?;
+    let open = OpenLoop {
+        world,
+        scene,
+        sites,
+        motion,
+        first_order,
+        displaced: &displaced,
+    };
+    let (loops, notes) = open.close();
+    found.closed_loops = loops;
+    found.notes.extend(notes);
     Ok(())
 }
 

@@ -16,6 +16,7 @@ pub mod eigenmodes;
 pub mod extrapolated_difference;
 pub mod null_space;
 pub mod real_eigenvectors;
+pub mod sampled_loop;
 pub mod shift_invert;
 pub mod sparse_motion;
 
