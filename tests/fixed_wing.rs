@@ -202,7 +202,7 @@ const GUSTS: &str = "environment.wind=[Uniform(velocity_m_s: (60, 5, 0)), Gust(\
     vertical: (decay_per_s: 0.2, frequency_rad_s: 0.5, marginal: Normal(standard_deviation_m_s: 0.7)))]";
 const AUTO: &str = "run.integrator=Auto(accuracy_m: 1e-3)";
 
-/// Altitude within 2 m rms, course through the mean air within 3 deg rms, airspeed within 1 m/s rms, in gusts of
+/// Altitude within 2 m rms, course through the mean air within 2 deg rms, airspeed within 0.6 m/s rms, in gusts of
 /// 1 m/s along the horizontal and 0.7 m/s along the vertical, after 30 s, for three seeds.
 #[test]
 fn altitude_course_and_airspeed_are_held_in_gusts() {
@@ -224,8 +224,8 @@ fn altitude_course_and_airspeed_are_held_in_gusts() {
         }
         let rms = |sum: f64| (sum / count).sqrt();
         assert_below("altitude, m rms", rms(altitude), 2.0);
-        assert_below("course, deg rms", rms(course), 3.0);
-        assert_below("airspeed, m/s rms", rms(airspeed), 1.0);
+        assert_below("course, deg rms", rms(course), 2.0);
+        assert_below("airspeed, m/s rms", rms(airspeed), 0.6);
     }
 }
 
@@ -254,9 +254,10 @@ fn moving_lines_and_orbits_are_followed() {
         assert_below(
             "off the orbit, m",
             (off.truncate().length() - 150.0).abs(),
-            2.0,
+            0.2,
         );
-        assert_below("above the orbit, m", off.z.abs(), 0.5);
+        // Its roll grows and falls along an orbit that moves through the air, and height with it.
+        assert_below("above the orbit, m", off.z.abs(), 1.0);
     }
 }
 
