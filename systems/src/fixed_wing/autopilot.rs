@@ -230,9 +230,21 @@ impl Autopilot {
         (base + gains.second * integral).clamp(-limit, limit)
     }
 
+    /// Takes back the largest pitch while the throttle is open and airspeed is missing.
+    fn hold_back(&self, memory: &mut Memory, missing_m_s: f64) {
+        let (gains, trim) = (&self.gains.airspeed, self.trim.controls.throttle);
+        let wanted = trim + gains.proportional * missing_m_s + gains.second * memory.airspeed.value;
+        let starves = wanted >= 1.0 && missing_m_s > MISSING_AIRSPEED_M_S;
+        let way = if starves { 1.0 } else { -1.0 };
+        let step = way * HOLDING_BACK_RAD_S * self.spec.period_s;
+        let most = 2.0 * self.spec.pitch_limit_deg.to_radians();
+        memory.held_back_rad = (memory.held_back_rad + step).clamp(0.0, most);
+    }
+
     fn pitch_command(&self, memory: &mut Memory, sensed: &Sensed, command: VerticalCommand) -> f64 {
         let (trim, limit) = (self.trim.pitch_rad, self.spec.pitch_limit_deg.to_radians());
-        let (least, most) = (trim - limit, trim + limit - memory.held_back_rad);
+        let least = trim - limit;
+        let most = (trim + limit - memory.held_back_rad).max(least);
         let (wanted_m, rate_m_s) = match command {
             VerticalCommand::Pitch(pitch) => {
                 memory.altitude = Integral::default();
