@@ -43,9 +43,11 @@ pub(super) struct Flying {
     pub(super) end_game_pitch_rad: Option<f64>,
 }
 
-/// Airspeeds that guidance asks for lie between these times the least and the greatest of level flight: near the
-/// least the elevator has nothing left to steer with.
-const MARGINS: (f64, f64) = (1.15, 0.998);
+/// Airspeeds that guidance asks for begin at so many times the least of level flight: near that the elevator has
+/// nothing left to steer with.
+pub(super) const LEAST_MARGIN: f64 = 1.15;
+/// They end at this part of the greatest.
+const MOST_MARGIN: f64 = 0.998;
 
 type Drones<'w, 's> = Query<
     'w,
@@ -209,7 +211,7 @@ impl Guide<'_> {
             return (None, None);
         };
         let (least, most) = self.trim.level_m_s;
-        let inside = (least * MARGINS.0, most * MARGINS.1);
+        let inside = (least * LEAST_MARGIN, most * MOST_MARGIN);
         let station = Station {
             point: MovingPoint {
                 position_m: target.position_m + vector(pursuit.offset_m),

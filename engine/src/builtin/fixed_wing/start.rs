@@ -18,7 +18,7 @@ use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
 use glam::DVec3;
 
-use super::control::{AutopilotOf, Flying};
+use super::control::{AutopilotOf, Flying, LEAST_MARGIN};
 use crate::scene::{Scene, SceneEntity, SetupError};
 use crate::world::{EntityName, SceneEntities};
 
@@ -144,6 +144,7 @@ fn start(
             gains,
             trim: level,
             limits: flier.aircraft.limits,
+            safe_airspeed_m_s: LEAST_MARGIN * level_m_s.0,
         },
         memory: Memory::starting_in(vector(wind_m_s)),
         chase: Chase::default(),
