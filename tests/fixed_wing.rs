@@ -14,6 +14,7 @@ mod fixed_wing {
 }
 mod flight;
 
+use aerobot::components::fixed_wing::FixedWing;
 use aerobot::components::fixed_wing::controls::Controls;
 use aerobot::components::state::{AngularVelocity, Attitude, Velocity};
 use aerobot::engine::builtin::fixed_wing::DroneTrim;
@@ -25,8 +26,8 @@ use aerobot::reproduce::Settings;
 use aerobot::reproduce::chase::{DroneAir, fly};
 use fixed_wing::independent::{State, fly as fly_apart};
 use flight::{
-    assert_below, assert_relative, channel, fly as fly_text, frame_at, load, owned, position,
-    scene_file, summary_of, velocity,
+    assert_below, channel, fly as fly_text, frame_at, load, owned, position, scene_file,
+    summary_of, velocity,
 };
 use glam::DVec3;
 
@@ -202,7 +203,7 @@ const GUSTS: &str = "environment.wind=[Uniform(velocity_m_s: (60, 5, 0)), Gust(\
     vertical: (decay_per_s: 0.2, frequency_rad_s: 0.5, marginal: Normal(standard_deviation_m_s: 0.7)))]";
 const AUTO: &str = "run.integrator=Auto(accuracy_m: 1e-3)";
 
-/// Altitude within 2 m rms, course through the mean air within 3 deg rms, airspeed within 1 m/s rms, in gusts of
+/// Altitude within 2 m rms, course through the mean air within 2 deg rms, airspeed within 0.6 m/s rms, in gusts of
 /// 1 m/s along the horizontal and 0.7 m/s along the vertical, after 30 s, for three seeds.
 #[test]
 fn altitude_course_and_airspeed_are_held_in_gusts() {
@@ -224,8 +225,8 @@ fn altitude_course_and_airspeed_are_held_in_gusts() {
         }
         let rms = |sum: f64| (sum / count).sqrt();
         assert_below("altitude, m rms", rms(altitude), 2.0);
-        assert_below("course, deg rms", rms(course), 3.0);
-        assert_below("airspeed, m/s rms", rms(airspeed), 1.0);
+        assert_below("course, deg rms", rms(course), 2.0);
+        assert_below("airspeed, m/s rms", rms(airspeed), 0.6);
     }
 }
 
@@ -254,9 +255,10 @@ fn moving_lines_and_orbits_are_followed() {
         assert_below(
             "off the orbit, m",
             (off.truncate().length() - 150.0).abs(),
-            2.0,
+            0.2,
         );
-        assert_below("above the orbit, m", off.z.abs(), 0.5);
+        // Its roll grows and falls along an orbit that moves through the air, and height with it.
+        assert_below("above the orbit, m", off.z.abs(), 1.0);
     }
 }
 
@@ -332,7 +334,7 @@ fn the_gondola_is_chased_as_the_paper_shows() {
     let (first, last) = (own.rows.first().unwrap(), own.rows.last().unwrap());
     println!("{first:?}\n{last:?}\n{:?}", own.events);
     assert!(first.error_m.x < -100.0 && first.error_m.y.abs() > 20.0);
-    assert!(last.gondola_y_m < -5.0, "the sail has moved the gondola");
+    assert!(last.gondola_y_m < -3.0, "the sail has moved the gondola");
     assert_below("x, m", (last.error_m.x + 30.0).abs(), 0.5);
     assert_below("y, m", last.error_m.y.abs(), 0.3);
     assert_below("z, m", last.error_m.z.abs(), 0.3);
@@ -384,5 +386,8 @@ fn the_scene_of_the_chase_starts_in_its_steady_state() {
             .iter()
             .any(|note| note.contains("trim of `drone`"))
     );
-    assert_relative("speed", settled.velocity_m_s.x - 25.0, 36.66, 1e-3);
+    let drone: &FixedWing = scene.entity("drone").unwrap().get().unwrap();
+    let wind_m_s = drone.wind.velocity_m_s(DVec3::ZERO);
+    let cruise = settled.velocity_m_s - wind_m_s - DVec3::new(25.0, 0.0, 0.0);
+    assert_below("cruise, m/s", cruise.length(), 1e-5);
 }

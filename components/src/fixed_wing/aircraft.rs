@@ -366,9 +366,16 @@ impl Propulsion {
     fn check(&self, report: &mut FieldReport) {
         report.positive("diameter_m", self.diameter_m);
         for (name, (zero, one, two)) in [("thrust", self.thrust), ("torque", self.torque)] {
-            report.positive(&format!("{name}.0"), zero);
-            report.finite(&format!("{name}.1"), one);
-            report.finite(&format!("{name}.2"), two);
+            if !(zero > 0.0 && (zero + one + two).is_finite()) {
+                report.add(
+                    name,
+                    format!(
+                        "the coefficients of `{name}` must be finite, and that of a propeller at rest above \
+                         zero: ({zero}, {one}, {two})"
+                    ),
+                    "they are those of 1, J and J^2",
+                );
+            }
         }
         report.positive("motor_constant_v_s", self.motor_constant_v_s);
         report.positive("resistance_ohm", self.resistance_ohm);

@@ -76,6 +76,10 @@ pub(crate) fn find(world: &World, scene: &Scene) -> Vec<TetheredSystem> {
                 }
             }
         }
+        // A helm is no system.
+        if system.anchors.is_empty() && system.bodies.is_empty() {
+            continue;
+        }
         if system.anchors.is_empty() {
             system.reference = system.bodies.first().copied();
             let balloons = system.bodies.iter();

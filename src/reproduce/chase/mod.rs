@@ -161,15 +161,14 @@ fn fly_in(
         overrides.push(format!("run.duration_s={duration_s:?}"));
     }
     if let Some(nodes) = settings.nodes {
-        // Nodes of another number have no places of their own: the flight starts from its steady state.
+        // Nodes of another number have no places of their own.
         overrides.push(format!("entities.tether.Tether.nodes={nodes}"));
         overrides.push("entities.tether.Tether.start=Equilibrium".to_owned());
     }
     let scene = simulator.load_text(SCENE_NAME, SCENE.to_owned(), Path::new("."), &overrides)?;
     let mut simulation = simulator.build(&scene)?;
-    if settings.nodes.is_some() {
-        simulation.settle_in_wind(&scene)?;
-    }
+    // The scene starts in its steady state; with other nodes that is another one.
+    simulation.settle_in_wind(&scene)?;
     let level_m_s = of::<DroneTrim>(&simulation, DRONE)?.level_m_s;
     let velocity_m_s = of::<Velocity>(&simulation, GONDOLA)?.0;
     let wind_m_s = wind_at(&simulation, GONDOLA)?;

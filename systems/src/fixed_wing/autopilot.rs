@@ -13,9 +13,8 @@
 //! and north-east-down. Source: Beard and McLain (2012), ch. 6.
 //!
 //! Integrals are of the trapezium, and stand still while what they feed is at a limit and would be driven further.
-//! An altitude far away is approached at a limited rate of climb. Where the throttle is open and the airspeed falls
-//! short of what is asked for by 3 m/s, speed goes before height: the largest pitch is taken back, by 5 deg/s, until
-//! it does not.
+//! An altitude far away is approached at a limited rate of climb. Where the throttle is open and the airspeed below
+//! what is safe, speed goes before height: the largest pitch is taken back, by 5 deg/s, until it is not.
 //!
 //! Assumptions: the drone knows its state, its airspeed, and the wind averaged over a time.
 
@@ -30,8 +29,6 @@ use super::flight_trim::TrimmedFlight;
 use super::gains::Gains;
 use super::north_east_down::roll_pitch_yaw;
 
-/// Airspeed that may be missing while the throttle is open, m/s.
-const MISSING_AIRSPEED_M_S: f64 = 3.0;
 /// Rate at which the largest pitch is taken back, rad/s.
 const HOLDING_BACK_RAD_S: f64 = 0.087;
 
@@ -128,6 +125,8 @@ pub struct Autopilot {
     pub trim: TrimmedFlight,
     /// How far surfaces go.
     pub limits: SurfaceLimits,
+    /// Airspeed below which speed goes before height, m/s.
+    pub safe_airspeed_m_s: f64,
 }
 
 impl Memory {
@@ -168,7 +167,7 @@ impl Autopilot {
         let airspeed = through_air.length();
         let angles = roll_pitch_yaw(sensed.attitude);
         let roll_c = self.roll_command(memory, sensed, airspeed, command.lateral);
-        self.hold_back(memory, command.airspeed_m_s - airspeed);
+        self.hold_back(memory, airspeed, command.airspeed_m_s);
         let pitch_c = self.pitch_command(memory, sensed, command.vertical);
         let trim = &self.trim.controls;
         let (gains, rate) = (&self.gains, sensed.rate_rad_s);
@@ -230,9 +229,23 @@ impl Autopilot {
         (base + gains.second * integral).clamp(-limit, limit)
     }
 
+    /// Takes back the largest pitch while the throttle is open and the airspeed is not safe.
+    fn hold_back(&self, memory: &mut Memory, airspeed_m_s: f64, wanted_m_s: f64) {
+        let (gains, trim) = (&self.gains.airspeed, self.trim.controls.throttle);
+        let missing_m_s = wanted_m_s - airspeed_m_s;
+        let throttle =
+            trim + gains.proportional * missing_m_s + gains.second * memory.airspeed.value;
+        let starves = throttle >= 1.0 && airspeed_m_s < self.safe_airspeed_m_s;
+        let way = if starves { 1.0 } else { -1.0 };
+        let step = way * HOLDING_BACK_RAD_S * self.spec.period_s;
+        let most = 2.0 * self.spec.pitch_limit_deg.to_radians();
+        memory.held_back_rad = (memory.held_back_rad + step).clamp(0.0, most);
+    }
+
     fn pitch_command(&self, memory: &mut Memory, sensed: &Sensed, command: VerticalCommand) -> f64 {
         let (trim, limit) = (self.trim.pitch_rad, self.spec.pitch_limit_deg.to_radians());
-        let (least, most) = (trim - limit, trim + limit - memory.held_back_rad);
+        let least = trim - limit;
+        let most = (trim + limit - memory.held_back_rad).max(least);
         let (wanted_m, rate_m_s) = match command {
             VerticalCommand::Pitch(pitch) => {
                 memory.altitude = Integral::default();

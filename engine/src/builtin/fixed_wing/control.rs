@@ -16,7 +16,7 @@ use aerobot_systems::fixed_wing::guidance::{
     MovingLine, MovingOrbit, MovingPoint, Station, follow_line, follow_orbit,
     proportional_navigation, pursue,
 };
-use aerobot_systems::fixed_wing::north_east_down::{attitude, vector};
+use aerobot_systems::fixed_wing::north_east_down::{attitude, roll_pitch_yaw, vector};
 use bevy_ecs::component::Component;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::system::{Query, Res, ResMut};
@@ -39,10 +39,15 @@ pub(super) struct Flying {
     pub(super) target: Option<Entity>,
     /// The last thing it was asked for.
     pub(super) last: Option<Command>,
+    /// Pitch asked for in the end game, rad.
+    pub(super) end_game_pitch_rad: Option<f64>,
 }
 
-/// Part of the way to the greatest airspeed of level flight, and above the least, that guidance asks for.
-const MARGIN: f64 = 0.02;
+/// Airspeeds that guidance asks for begin at so many times the least of level flight: near that the elevator has
+/// nothing left to steer with.
+pub(super) const LEAST_MARGIN: f64 = 1.15;
+/// They end at this part of the greatest.
+const MOST_MARGIN: f64 = 0.998;
 
 type Drones<'w, 's> = Query<
     'w,
@@ -103,6 +108,7 @@ pub(super) fn control(
             target,
             time_s: clock.time_s,
             throttle: held.throttle,
+            pitch_rad: roll_pitch_yaw(attitude(turned.0)).y,
             wind_m_s: flying.memory.steady_wind_m_s,
             flying,
         };
@@ -136,6 +142,7 @@ struct Guide<'a> {
     target: Option<MovingPoint>,
     time_s: f64,
     throttle: f64,
+    pitch_rad: f64,
     wind_m_s: DVec3,
     flying: &'a mut Flying,
 }
@@ -204,7 +211,7 @@ impl Guide<'_> {
             return (None, None);
         };
         let (least, most) = self.trim.level_m_s;
-        let inside = (least * (1.0 + MARGIN), most * (1.0 - 0.1 * MARGIN));
+        let inside = (least * LEAST_MARGIN, most * MOST_MARGIN);
         let station = Station {
             point: MovingPoint {
                 position_m: target.position_m + vector(pursuit.offset_m),
@@ -249,27 +256,20 @@ impl Guide<'_> {
         }
     }
 
-    /// Proportional navigation, as a roll and a pitch: tan(roll) = a/g across the path in the horizontal, and
-    /// a path that the pitch turns with its lag m V/(q S C_La).
-    fn end_game(&self, target: &MovingPoint, constant: f64, airspeed_m_s: f64) -> Command {
+    /// Proportional navigation as a roll and a pitch: tan(roll) = a/g across the path in the horizontal, and a
+    /// pitch that turns at a/V as the path is to.
+    fn end_game(&mut self, target: &MovingPoint, constant: f64, airspeed_m_s: f64) -> Command {
         let Some(wanted) = proportional_navigation(constant, &self.here, target) else {
             return self.straight_on();
         };
         let through_air = self.here.velocity_m_s - self.wind_m_s;
-        let speed = through_air.length().max(1.0);
-        let course = course_rad(through_air);
-        let (sin, cos) = libm::sincos(course);
+        let (sin, cos) = libm::sincos(course_rad(through_air));
         let to_the_right = wanted.dot(DVec3::new(-sin, cos, 0.0));
-        let autopilot = &self.flying.autopilot;
-        let aircraft = self.drone.aircraft();
-        let roll = autopilot.trim.roll_rad + libm::atan(to_the_right / self.trim.gravity_m_s2);
-        let lag_s = 2.0 * self.trim.mass_kg
-            / (self.trim.density_kg_m3
-                * speed
-                * aircraft.geometry.wing_area_m2
-                * aircraft.longitudinal.lift_alpha);
-        let climb = libm::asin((-through_air.z / speed).clamp(-1.0, 1.0));
-        let pitch = autopilot.trim.pitch_rad + climb - lag_s * wanted.z / speed;
+        let trim = &self.flying.autopilot.trim;
+        let roll = trim.roll_rad + libm::atan(to_the_right / self.trim.gravity_m_s2);
+        let turned = -wanted.z / through_air.length().max(1.0) * self.drone.autopilot.period_s;
+        let pitch = self.flying.end_game_pitch_rad.unwrap_or(self.pitch_rad) + turned;
+        self.flying.end_game_pitch_rad = Some(pitch);
         Command {
             lateral: LateralCommand::Roll(roll),
             vertical: VerticalCommand::Pitch(pitch),

@@ -18,7 +18,7 @@ use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
 use glam::DVec3;
 
-use super::control::{AutopilotOf, Flying};
+use super::control::{AutopilotOf, Flying, LEAST_MARGIN};
 use crate::scene::{Scene, SceneEntity, SetupError};
 use crate::world::{EntityName, SceneEntities};
 
@@ -31,8 +31,6 @@ pub struct DroneTrim {
     pub level_m_s: (f64, f64),
     /// Density of that air, kg/m^3.
     pub density_kg_m3: f64,
-    /// Mass, kg.
-    pub mass_kg: f64,
     /// Gravity, m/s^2.
     pub gravity_m_s2: f64,
 }
@@ -121,7 +119,6 @@ fn start(
         flight,
         level_m_s,
         density_kg_m3: air.density_kg_m3,
-        mass_kg: flier.mass_kg,
         gravity_m_s2: flier.gravity_m_s2,
     };
     world
@@ -147,11 +144,13 @@ fn start(
             gains,
             trim: level,
             limits: flier.aircraft.limits,
+            safe_airspeed_m_s: LEAST_MARGIN * level_m_s.0,
         },
         memory: Memory::starting_in(vector(wind_m_s)),
         chase: Chase::default(),
         target,
         last: None,
+        end_game_pitch_rad: None,
     };
     world.entity_mut(id).insert(flying);
     world.spawn((AutopilotOf(id), Sampling::every(drone.autopilot.period_s)));

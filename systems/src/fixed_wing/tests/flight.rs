@@ -77,6 +77,7 @@ impl Flight {
                 gains,
                 trim,
                 limits: flier.aircraft.limits,
+                safe_airspeed_m_s: 16.0,
             },
             memory: Memory::default(),
             state: State {
