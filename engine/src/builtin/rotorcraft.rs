@@ -6,7 +6,6 @@ use aerobot_components::rotorcraft::{FlightReference, FlightStatus, RotorCommand
 use aerobot_components::sampling::Sampling;
 use aerobot_components::scene_component::FieldReport;
 use aerobot_components::state::{Air, Attitude, FirstOrderState, Mass, Position, Velocity};
-use aerobot_systems::clock::Clock;
 use aerobot_systems::docking::guidance::guide;
 use aerobot_systems::environment::EnvironmentModel;
 use aerobot_systems::instruments::attitude::heading_rad;
@@ -16,7 +15,7 @@ use aerobot_systems::rotorcraft::momentum_theory::{Inflow, shaft_power_w};
 use aerobot_systems::rotorcraft::rotor_forces::rotor_forces;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::schedule::IntoScheduleConfigs;
-use bevy_ecs::system::{In, IntoSystem, Query, Res, ResMut};
+use bevy_ecs::system::{In, IntoSystem, Query, ResMut};
 use bevy_ecs::world::World;
 
 use super::channels::channels_due;
@@ -120,7 +119,6 @@ fn record(
         (&Rotorcraft, &FlightStatus, &FirstOrderState),
         (&Velocity, &Attitude, &Air),
     )>,
-    _clock: Res<Clock>,
 ) {
     for (entity, channels, (rotorcraft, status, thrust), (velocity, attitude, air)) in &bodies {
         let through_air = velocity.0 - air.velocity_m_s;
