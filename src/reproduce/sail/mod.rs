@@ -181,6 +181,8 @@ fn trims(scene: &Scene) -> Result<Vec<(String, Trim)>, SceneError> {
             ] {
                 let mut sail = given.clone();
                 (sail.lift_slope, sail.wing.side, sail.downwash) = (slope, side, downwash);
+                // By lift alone, as the closed form of the paper's equations has it.
+                sail.wing.zero_lift_drag = 0.0;
                 let words = format!("{slope_words:<16} {side_words:<6} {sign_words:<11}");
                 found.push((words, trim(&sail.shape())));
             }
