@@ -58,10 +58,11 @@ fn own(flight: &ChaseFlight) -> String {
     );
     for row in &flight.rows {
         if SHOWN_S.contains(&row.time_s) {
-            let error = row.error_m;
+            let [x, y, z] = row.error_m.to_array().map(hundredths);
             text.push_str(&format!(
-                "  {:7.1} {:8.2} {:8.2} {:8.2} {:11.2}\n",
-                row.time_s, error.x, error.y, error.z, row.gondola_y_m
+                "  {:7.1} {x:8.2} {y:8.2} {z:8.2} {:11.2}\n",
+                row.time_s,
+                hundredths(row.gondola_y_m)
             ));
         }
     }
@@ -79,6 +80,11 @@ fn own(flight: &ChaseFlight) -> String {
     ));
     text.push_str(&told(flight));
     text
+}
+
+/// Rounded to what is printed: a zero that came out negative reads as a difference where there is none.
+fn hundredths(value: f64) -> f64 {
+    (100.0 * value).round() / 100.0 + 0.0
 }
 
 fn other(flight: &ChaseFlight) -> String {
