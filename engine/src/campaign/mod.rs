@@ -17,7 +17,6 @@ pub mod journal;
 pub mod latin_hypercube;
 pub mod manifest;
 pub mod metrics;
-pub mod normal;
 pub mod one_run;
 pub mod ordered;
 pub(crate) mod paired_table;
