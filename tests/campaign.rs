@@ -18,6 +18,8 @@ use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
+use program::full_disk::ends_on_a_full_disk;
+use program::refused::all_are_refused;
 use program::{Scratch, aerobot, text};
 
 /// A free fall of 1 s with all that a campaign can do; every fifth run is refused for its radius.
@@ -336,44 +338,7 @@ fn a_precision_is_reached_at_the_same_run() {
 
 #[test]
 fn every_bad_campaign_is_refused_with_its_message_and_nothing_is_written() {
-    let bless = std::env::var_os("AEROBOT_BLESS").is_some();
-    let mut wrong = Vec::new();
-    let mut count = 0;
-    for entry in fs::read_dir("tests/bad_campaigns").unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_none_or(|extension| extension != "ron") {
-            continue;
-        }
-        count += 1;
-        let scratch = Scratch::new();
-        let output = aerobot(&[
-            "campaign",
-            "run",
-            path.to_str().unwrap(),
-            "--out",
-            scratch.text(),
-        ]);
-        assert_eq!(
-            output.status.code(),
-            Some(2),
-            "{}: {}",
-            path.display(),
-            text(&output.stderr)
-        );
-        assert!(
-            !scratch.0.exists() && output.stdout.is_empty(),
-            "{}",
-            path.display()
-        );
-        let (said, expected) = (text(&output.stderr), path.with_extension("txt"));
-        if bless {
-            fs::write(&expected, &said).unwrap();
-        } else if fs::read_to_string(&expected).unwrap_or_default() != said {
-            wrong.push(said);
-        }
-    }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(count >= 14, "{count}");
+    all_are_refused("tests/bad_campaigns", &["campaign", "run"], 15);
 }
 
 #[test]
@@ -431,19 +396,7 @@ fn a_full_disk_ends_it_and_keeps_what_is_finished() {
     let scratch = Scratch::folder();
     let file = campaign(&scratch, PLANS);
     let (whole, full) = (scratch.path("whole"), scratch.path("full"));
-    let program = env!("CARGO_BIN_EXE_aerobot");
-    let limited =
-        format!("trap '' XFSZ; ulimit -f 8; exec {program} campaign run {file} --out {full}");
-    let output = Command::new("bash")
-        .args(["-c", &limited])
-        .output()
-        .unwrap();
-    let said = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(3), "{said}");
-    assert!(
-        said.contains("cannot write") && said.contains("finished runs are kept"),
-        "{said}"
-    );
+    ends_on_a_full_disk(8, &["campaign", "run", &file, "--out", &full]);
     let kept = fs::read_to_string(format!("{full}/shards/shard-00001.part")).unwrap();
     assert!(kept.lines().count() > 10);
     done(&aerobot(&["campaign", "run", &file, "--out", &full]));

@@ -92,6 +92,25 @@ fn compare(out: &str, name: &str) -> (Vec<Field>, String) {
     (fields.collect(), units.value.clone().unwrap())
 }
 
+/// A leaf so heavy that a wind does not move it: its airspeed is that of the wind.
+fn gusty_leaf(wind: &str) -> String {
+    format!(
+        r#"(
+    name: "gust",
+    environment: (wind: [{wind}]),
+    entities: {{
+        "leaf": (
+            Body: (mass_kg: 400, inertia: SolidSphere),
+            Sphere: (radius_m: 0.05),
+            Pose: (position_m: (0, 0, 56_000)),
+            Drag: Constant(coefficient: 0.47),
+        ),
+    }},
+    run: (duration_s: 0.1, output_every_s: 0.1, integrator: Auto()),
+)"#
+    )
+}
+
 /// Numbers as numbers, choices that are not as text, seeds beyond what floating point holds as they are.
 #[test]
 fn parquet_tables_are_the_csv_tables() {
@@ -240,24 +259,10 @@ fn chance_is_a_factor_and_base_samples_are_whole() {
     let scratch = Scratch::folder();
     scratch.file(
         "gust.ron",
-        r#"(
-    name: "gust",
-    environment: (
-        wind: [
-            Uniform(velocity_m_s: (20, 0, 0)),
-            Gust(zonal: (decay_per_s: 0.05, marginal: Normal(standard_deviation_m_s: 1))),
-        ],
-    ),
-    entities: {
-        "leaf": (
-            Body: (mass_kg: 400, inertia: SolidSphere),
-            Sphere: (radius_m: 0.05),
-            Pose: (position_m: (0, 0, 56_000)),
-            Drag: Constant(coefficient: 0.47),
+        &gusty_leaf(
+            "Uniform(velocity_m_s: (20, 0, 0)),
+            Gust(zonal: (decay_per_s: 0.05, marginal: Normal(standard_deviation_m_s: 1)))",
         ),
-    },
-    run: (duration_s: 0.1, output_every_s: 0.1, integrator: Auto()),
-)"#,
     );
     let file = scratch.file(
         "gusts.ron",
@@ -381,23 +386,7 @@ fn a_folder_has_the_table_of_a_gust() {
     scratch.file("there/speeds.csv", &format!("speed_m_s\n{speeds}"));
     scratch.file(
         "there/gust.ron",
-        r#"(
-    name: "gust",
-    environment: (
-        wind: [
-            Gust(zonal: (decay_per_s: 0.05, marginal: Empirical(file: "speeds.csv"))),
-        ],
-    ),
-    entities: {
-        "leaf": (
-            Body: (mass_kg: 400, inertia: SolidSphere),
-            Sphere: (radius_m: 0.05),
-            Pose: (position_m: (0, 0, 56_000)),
-            Drag: Constant(coefficient: 0.47),
-        ),
-    },
-    run: (duration_s: 0.1, output_every_s: 0.1, integrator: Auto()),
-)"#,
+        &gusty_leaf(r#"Gust(zonal: (decay_per_s: 0.05, marginal: Empirical(file: "speeds.csv")))"#),
     );
     let file = scratch.file(
         "there/gusts.ron",

@@ -17,6 +17,8 @@ use std::fs;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
+use program::full_disk::ends_on_a_full_disk;
+use program::refused::all_are_refused;
 use program::{Scratch, aerobot, text};
 
 /// A point of 2 kg that flies 10 s without air, g = 8.87 m/s^2.
@@ -420,29 +422,7 @@ fn a_search_that_finds_nothing_says_so() {
 
 #[test]
 fn every_bad_search_is_refused_with_its_message_and_nothing_is_written() {
-    let bless = std::env::var_os("AEROBOT_BLESS").is_some();
-    let (mut wrong, mut count) = (Vec::new(), 0);
-    for entry in fs::read_dir("tests/bad_searches").unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_none_or(|extension| extension != "ron") {
-            continue;
-        }
-        count += 1;
-        let scratch = Scratch::new();
-        let file = path.to_str().unwrap();
-        let output = aerobot(&["optimise", file, "--out", scratch.text()]);
-        let said = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{file}: {said}");
-        assert!(!scratch.0.exists() && output.stdout.is_empty(), "{file}");
-        let expected = path.with_extension("txt");
-        if bless {
-            fs::write(&expected, &said).unwrap();
-        } else if fs::read_to_string(&expected).unwrap_or_default() != said {
-            wrong.push(said);
-        }
-    }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(count >= 14, "{count}");
+    all_are_refused("tests/bad_searches", &["optimise"], 14);
 }
 
 #[test]
@@ -481,7 +461,7 @@ fn folders_of_others_are_left_alone() {
     let file = search(&scratch, THROW, &other);
     refused(
         &["optimise", &file, "--out", &out],
-        "belongs to another search",
+        "belongs to another design search",
     );
 }
 
@@ -492,18 +472,7 @@ fn a_full_disk_ends_it_and_keeps_what_is_finished() {
     let scene = fs::read_to_string("scenes/gust_response.ron").unwrap();
     let file = search(&scratch, &scene, GUSTS);
     let (whole, full) = (scratch.path("whole"), scratch.path("full"));
-    let program = env!("CARGO_BIN_EXE_aerobot");
-    let limited = format!("trap '' XFSZ; ulimit -f 7; exec {program} optimise {file} --out {full}");
-    let output = Command::new("bash")
-        .args(["-c", &limited])
-        .output()
-        .unwrap();
-    let said = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(3), "{said}");
-    assert!(
-        said.contains("cannot write") && said.contains("finished runs are kept"),
-        "{said}"
-    );
+    ends_on_a_full_disk(7, &["optimise", &file, "--out", &full]);
     let kept = fs::read_to_string(format!("{full}/runs.journal")).unwrap();
     assert!(kept.lines().count() > 10);
     for folder in [&full, &whole] {

@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 
 use aerobot_engine::campaign::definition::Campaign;
 use aerobot_engine::campaign::finished_runs::FinishedRuns;
-use aerobot_engine::campaign::journal::{find_record, wait_for};
+use aerobot_engine::campaign::journal::find_record;
+use aerobot_engine::campaign::line_journal::wait_for;
 use aerobot_engine::campaign::preparation::prepare;
 use aerobot_engine::campaign::record::Record;
 use aerobot_engine::campaign::results::write_results;

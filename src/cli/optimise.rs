@@ -82,7 +82,7 @@ fn folder_of(
     }
     let prepared = prepare_search(simulator, given)?;
     let folder = arguments.out.clone();
-    let name = &prepared.manifest.design_search.campaign;
+    let name = &prepared.manifest.campaign;
     let folder = folder.unwrap_or_else(|| Path::new("runs").join(name));
     prepared.into_folder(&folder)?;
     Ok(folder)

@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "every test file uses its own part")]
 
+pub(crate) mod full_disk;
+pub(crate) mod refused;
 pub(crate) mod reproduced;
 
 use std::fs;

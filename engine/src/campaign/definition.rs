@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use super::CampaignError;
-use super::manifest::{INPUT, Manifest, fingerprint_of};
+use super::manifest::{INPUT, Manifest, Study, fingerprint_of};
 use super::plan::Plan;
 use super::plan_tables::read_tables;
 use super::preparation::{CAMPAIGN_FILE, SCENE_FILE};
@@ -35,7 +35,7 @@ impl Campaign {
     /// # Errors
     /// It is no folder of a campaign, or what it holds is not what it was made of.
     pub fn open(folder: &Path) -> Result<Self, CampaignError> {
-        let manifest = Manifest::open(folder)?;
+        let manifest = Manifest::open(folder, Study::Campaign)?;
         let files = read_input(folder, &manifest)?;
         let shown = folder.join(INPUT).join(CAMPAIGN_FILE).display().to_string();
         let (specification, source) = read_specification(&shown, text_of(&files, CAMPAIGN_FILE))?;

@@ -1,9 +1,9 @@
 //! How a field varies: distributions by their quantile functions, and values in steps.
 
 use aerobot_components::scene_component::FieldReport;
+use aerobot_systems::stochastic::normal_distribution;
 use serde::Deserialize;
 
-use super::normal::{normal_below, normal_quantile};
 use super::ordered::RonText;
 
 /// The most levels of a field.
@@ -201,7 +201,7 @@ impl Distribution {
             Self::Normal {
                 mean,
                 standard_deviation,
-            } => mean + standard_deviation * normal_quantile(u),
+            } => mean + standard_deviation * normal_distribution::quantile(u),
             Self::TruncatedNormal {
                 mean,
                 standard_deviation,
@@ -211,7 +211,7 @@ impl Distribution {
             Self::Lognormal {
                 median,
                 log_standard_deviation,
-            } => median * libm::exp(log_standard_deviation * normal_quantile(u)),
+            } => median * libm::exp(log_standard_deviation * normal_distribution::quantile(u)),
             Self::Weibull { scale, shape } => scale * libm::pow(-libm::log1p(-u), 1.0 / shape),
             _ => 0.0,
         }
@@ -242,14 +242,14 @@ fn standard_bounds(mean: f64, deviation: f64, low: f64, high: f64) -> (f64, f64,
 
 fn truncated_share(mean: f64, deviation: f64, low: f64, high: f64) -> f64 {
     let (a, b, _) = standard_bounds(mean, deviation, low, high);
-    normal_below(b) - normal_below(a)
+    normal_distribution::below(b) - normal_distribution::below(a)
 }
 
 fn truncated(u: f64, mean: f64, deviation: f64, (low, high): (f64, f64)) -> f64 {
     let (a, b, mirrored) = standard_bounds(mean, deviation, low, high);
     let part = if mirrored { 1.0 - u } else { u };
-    let (below_a, below_b) = (normal_below(a), normal_below(b));
-    let standard = normal_quantile(below_a + part * (below_b - below_a));
+    let (below_a, below_b) = (normal_distribution::below(a), normal_distribution::below(b));
+    let standard = normal_distribution::quantile(below_a + part * (below_b - below_a));
     let value = if mirrored { -standard } else { standard };
     (mean + deviation * value).clamp(low, high)
 }

@@ -1,4 +1,4 @@
-//! `manifest.json`: what a folder of a campaign is of. With the files that it names in `input/` it is all that a
+//! `manifest.json`: what the folder of a campaign or a design search is of. With the files that it names in `input/` it is all that a
 //! run needs: shards on other machines, and repetitions years later, read nothing else.
 
 use std::collections::BTreeMap;
@@ -9,7 +9,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::CampaignError;
-use super::record::fingerprint;
+use super::fingerprint::fingerprint;
 use crate::recording::summary::VERSION;
 
 /// Name of the manifest in the folder.
@@ -55,21 +55,75 @@ pub fn fingerprint_of(files: &[(String, String)]) -> String {
     )
 }
 
+/// What many runs are done for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Study {
+    /// What they have in common.
+    Campaign,
+    /// The best design.
+    DesignSearch,
+}
+
+/// The manifest of a design search: by its name no campaign takes it for its own.
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct OfSearch<M> {
+    design_search: M,
+}
+
+impl Study {
+    /// The word in messages.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Campaign => "campaign",
+            Self::DesignSearch => "design search",
+        }
+    }
+
+    /// The command that makes a folder.
+    fn command(self) -> &'static str {
+        match self {
+            Self::Campaign => "aerobot campaign plan FILE --out DIR",
+            Self::DesignSearch => "aerobot optimise FILE --out DIR",
+        }
+    }
+
+    fn parse(self, text: &str) -> serde_json::Result<Manifest> {
+        match self {
+            Self::Campaign => serde_json::from_str(text),
+            Self::DesignSearch => {
+                serde_json::from_str(text).map(|of: OfSearch<Manifest>| of.design_search)
+            }
+        }
+    }
+
+    fn text(self, manifest: &Manifest) -> serde_json::Result<String> {
+        match self {
+            Self::Campaign => serde_json::to_string_pretty(manifest),
+            Self::DesignSearch => serde_json::to_string_pretty(&OfSearch {
+                design_search: manifest,
+            }),
+        }
+    }
+}
+
 impl Manifest {
     /// Reads that of a folder; `None` if there is no such file.
     ///
     /// # Errors
-    /// The file is not a manifest, or one of another layout or version.
-    pub fn read(folder: &Path) -> Result<Option<Self>, CampaignError> {
+    /// The file is not a manifest, or one of another study, layout or version.
+    pub fn read(folder: &Path, study: Study) -> Result<Option<Self>, CampaignError> {
         let path = folder.join(MANIFEST);
         let text = match fs::read_to_string(&path) {
             Ok(text) => text,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(CampaignError::unreadable(&path, &error)),
         };
-        let manifest: Self = serde_json::from_str(&text).map_err(|error| {
+        let word = study.word();
+        let manifest = study.parse(&text).map_err(|error| {
             let message = format!(
-                "{}:{}:{}: this is not the manifest of a campaign: {error}",
+                "{}:{}:{}: this is not the manifest of a {word}: {error}",
                 path.display(),
                 error.line(),
                 error.column()
@@ -78,7 +132,7 @@ impl Manifest {
         })?;
         if (manifest.layout, manifest.version.as_str()) != (LAYOUT, VERSION) {
             let message = format!(
-                "the campaign in `{}` is of version {}, this is {VERSION}",
+                "the {word} in `{}` is of version {}, this is {VERSION}",
                 folder.display(),
                 manifest.version
             );
@@ -92,28 +146,28 @@ impl Manifest {
         Ok(Some(manifest))
     }
 
-    /// Reads that of a folder of a campaign.
+    /// Reads that of a folder of a study.
     ///
     /// # Errors
     /// As [`Manifest::read`], or that there is none.
-    pub fn open(folder: &Path) -> Result<Self, CampaignError> {
-        Self::read(folder)?.ok_or_else(|| {
-            let message = format!(
-                "`{}` is not the folder of a campaign: it has no `{MANIFEST}`",
-                folder.display()
-            );
-            let help = "`aerobot campaign plan FILE --out DIR` makes one";
-            CampaignError::refused(message, help)
+    pub fn open(folder: &Path, study: Study) -> Result<Self, CampaignError> {
+        Self::read(folder, study)?.ok_or_else(|| {
+            let (folder, word) = (folder.display(), study.word());
+            let message =
+                format!("`{folder}` is not the folder of a {word}: it has no `{MANIFEST}`");
+            let help = format!("`{}` makes one", study.command());
+            CampaignError::refused(message, &help)
         })
     }
 }
 
-/// Makes the folder of a campaign, whole or not at all: it is filled beside its place and renamed.
+/// Makes the folder of a study, whole or not at all: it is filled beside its place and renamed.
 ///
 /// # Errors
 /// What the file system refused; nothing is left then.
 pub fn create_folder(
     folder: &Path,
+    study: Study,
     manifest: &Manifest,
     files: &[(String, String)],
 ) -> Result<(), CampaignError> {
@@ -128,24 +182,31 @@ pub fn create_folder(
         return Err(refused(folder, &error));
     };
     let new = folder.with_file_name(format!(".{}.new", name.to_string_lossy()));
-    let filled = fill(&new, manifest, files).and_then(|()| fs::rename(&new, folder));
+    let filled = fill(&new, study, manifest, files).and_then(|()| fs::rename(&new, folder));
     filled.map_err(|error| {
         let _ = fs::remove_dir_all(&new);
         refused(folder, &error)
     })
 }
 
-fn fill(folder: &Path, manifest: &Manifest, files: &[(String, String)]) -> io::Result<()> {
+fn fill(
+    folder: &Path,
+    study: Study,
+    manifest: &Manifest,
+    files: &[(String, String)],
+) -> io::Result<()> {
     // Left over from a program that was ended here.
     if folder.exists() {
         fs::remove_dir_all(folder)?;
     }
     fs::create_dir_all(folder.join(INPUT))?;
-    fs::create_dir(folder.join(super::shards::SHARDS))?;
+    if study == Study::Campaign {
+        fs::create_dir(folder.join(super::shards::SHARDS))?;
+    }
     for (name, text) in files {
         fs::write(folder.join(INPUT).join(name), text)?;
     }
-    let mut text = serde_json::to_string_pretty(manifest)?;
+    let mut text = study.text(manifest)?;
     text.push('\n');
     fs::write(folder.join(MANIFEST), text)
 }

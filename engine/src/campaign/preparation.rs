@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::CampaignError;
 use super::distributions::Distribution;
-use super::manifest::{LAYOUT, MANIFEST, Manifest, create_folder, fingerprint_of};
+use super::manifest::{LAYOUT, MANIFEST, Manifest, Study, create_folder, fingerprint_of};
 use super::plan::Plan;
 use super::plan_tables::{Files, read_tables};
 use super::probe::Probe;
@@ -21,8 +21,9 @@ pub const CAMPAIGN_FILE: &str = "campaign.ron";
 /// Name of the scene in `input/`.
 pub const SCENE_FILE: &str = "scene.ron";
 
-/// A campaign that is in order, and the files that its folder will hold.
+/// A campaign or a design search that is in order, and the files that its folder will hold.
 pub struct Prepared {
+    study: Study,
     /// What the folder is of.
     pub manifest: Manifest,
     /// Names and texts of the files in `input/`.
@@ -40,7 +41,12 @@ pub fn prepare(simulator: &Simulator, file: &Path, shards: u64) -> Result<Prepar
     let (specification, source) = read_specification(&file.display().to_string(), &text)?;
     let folder = file.parent().unwrap_or_else(|| Path::new("."));
     let checked = check(simulator, folder, &specification, &source)?;
-    checked.into_prepared(CAMPAIGN_FILE, text, &specification, shards)
+    checked.into_prepared(
+        Study::Campaign,
+        (CAMPAIGN_FILE, text),
+        &specification,
+        shards,
+    )
 }
 
 /// A specification that fits its scene.
@@ -90,8 +96,8 @@ impl Checked {
     /// With the text of the specification, which `input/` will have under `name`.
     pub(crate) fn into_prepared(
         self,
-        name: &str,
-        text: String,
+        study: Study,
+        (name, text): (&str, String),
         specification: &CampaignSpec,
         shards: u64,
     ) -> Result<Prepared, SceneError> {
@@ -103,6 +109,7 @@ impl Checked {
         }
         let (files, tables) = input_files((name, text), &self.scene, self.tables)?;
         Ok(Prepared {
+            study,
             manifest: Manifest {
                 layout: LAYOUT,
                 version: VERSION.to_owned(),
@@ -120,12 +127,12 @@ impl Checked {
 }
 
 impl Prepared {
-    /// Makes the folder, or makes sure that it is of this campaign.
+    /// Makes the folder, or makes sure that it is of this study.
     ///
     /// # Errors
     /// The folder holds something else; then nothing was written.
     pub fn into_folder(self, folder: &Path) -> Result<(), CampaignError> {
-        let Some(there) = Manifest::read(folder)? else {
+        let Some(there) = Manifest::read(folder, self.study)? else {
             let is_free = match std::fs::read_dir(folder) {
                 Ok(mut entries) => entries.next().is_none(),
                 Err(_) => !folder.exists(),
@@ -137,9 +144,9 @@ impl Prepared {
                     "name another folder with `--out`",
                 ));
             }
-            return create_folder(folder, &self.manifest, &self.files);
+            return create_folder(folder, self.study, &self.manifest, &self.files);
         };
-        let (wanted, folder) = (&self.manifest, folder.display());
+        let (wanted, folder, word) = (&self.manifest, folder.display(), self.study.word());
         if there.fingerprint != wanted.fingerprint {
             let what = if there.campaign == wanted.campaign {
                 "its file, its scene or a table of them has changed since".to_owned()
@@ -149,7 +156,7 @@ impl Prepared {
                     there.campaign, wanted.campaign
                 )
             };
-            let message = format!("`{folder}` belongs to another campaign: {what}");
+            let message = format!("`{folder}` belongs to another {word}: {what}");
             return Err(CampaignError::refused(
                 message,
                 "name another folder with `--out`",

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use super::CampaignError;
 use super::definition::Campaign;
 use super::finished_runs::FinishedRuns;
-use super::journal::{Journal, scan};
+use super::journal::{open_journal, scan};
+use super::line_journal::LineJournal;
 use super::record::{Record, RecordLine};
 use super::run_set::RunSet;
 use super::shards::Shard;
@@ -103,7 +104,7 @@ pub fn run_shard(
         if let Some(journal) = &mut journal {
             let job = |index| campaign.run(simulator, index);
             let mut take = |record: Record| -> Result<(), CampaignError> {
-                journal.add(&record)?;
+                journal.add(&record.to_line())?;
                 finished.take(record.index, |place| record.metrics.get(place).copied()?);
                 progress(finished.runs.len(), total);
                 Ok(())
@@ -138,11 +139,11 @@ fn open(
     campaign: &Campaign,
     shard: Shard,
     finished: &mut Finished,
-) -> Result<Option<Journal>, CampaignError> {
+) -> Result<Option<LineJournal>, CampaignError> {
     let finished_file = shard.finished_file(&campaign.folder);
     let part_file = shard.part_file(&campaign.folder);
     if !finished_file.exists() {
-        let journal = Journal::open(campaign, &part_file, &mut |line| finished.take_line(line))?;
+        let journal = open_journal(campaign, &part_file, &mut |line| finished.take_line(line))?;
         // Another process may have finished it since.
         if !finished_file.exists() {
             return Ok(Some(journal));

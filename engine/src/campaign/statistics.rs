@@ -131,7 +131,8 @@ fn ranks(values: &[f64]) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::normal::normal_quantile;
+    use aerobot_systems::stochastic::normal_distribution::quantile;
+
     use super::*;
 
     #[test]
@@ -174,7 +175,7 @@ mod tests {
         let (mut means, mut medians) = (0, 0);
         for sample in 0..100 {
             let mut random = RandomStream::new(sample, Purpose::Inputs, 0);
-            let mut values: Vec<f64> = (0..40).map(|_| normal_quantile(random.unit())).collect();
+            let mut values: Vec<f64> = (0..40).map(|_| quantile(random.unit())).collect();
             values.sort_by(f64::total_cmp);
             let found = bootstrap(&values, &[50.0], 1, sample).unwrap();
             let holds = |interval: [f64; 2]| i32::from(interval[0] < 0.0 && 0.0 < interval[1]);

@@ -9,8 +9,8 @@ use std::path::Path;
 
 use super::CampaignError;
 use super::definition::Campaign;
-use super::journal::is_held;
-use super::record::fingerprint;
+use super::fingerprint::fingerprint;
+use super::line_journal::is_held;
 
 /// Name of the folder in that of the campaign for what jobs print.
 pub const OUTPUT: &str = "slurm";

@@ -1,64 +1,16 @@
 //! A design search as its folder defines it.
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
-
-use serde::{Deserialize, Serialize};
 
 use super::design::Design;
 use super::preparation::SEARCH_FILE;
 use super::specification::{SearchSpec, read_search};
 use crate::campaign::CampaignError;
 use crate::campaign::definition::{Campaign, read_input, text_of};
-use crate::campaign::manifest::{INPUT, LAYOUT, MANIFEST, Manifest};
+use crate::campaign::manifest::{INPUT, Manifest, Study};
 use crate::campaign::record::Record;
 use crate::plugin::Simulator;
-use crate::recording::summary::VERSION;
 use crate::scene::{Scene, SceneError};
-
-/// `manifest.json` of a design search: what its folder is of.
-#[derive(Clone, Debug, Deserialize, PartialEq, Eq, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct SearchManifest {
-    /// The runs of a design as those of a campaign.
-    pub design_search: Manifest,
-}
-
-impl SearchManifest {
-    /// Reads that of a folder; `None` if there is no such file.
-    ///
-    /// # Errors
-    /// The file is not the manifest of a design search, or one of another layout or version.
-    pub fn read(folder: &Path) -> Result<Option<Self>, CampaignError> {
-        let path = folder.join(MANIFEST);
-        let text = match fs::read_to_string(&path) {
-            Ok(text) => text,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(CampaignError::unreadable(&path, &error)),
-        };
-        let manifest: Self = serde_json::from_str(&text).map_err(|error| {
-            let message = format!(
-                "{}:{}:{}: this is not the manifest of a design search: {error}",
-                path.display(),
-                error.line(),
-                error.column()
-            );
-            CampaignError::refused(message, "name another folder with `--out`")
-        })?;
-        let found = &manifest.design_search;
-        if (found.layout, found.version.as_str()) != (LAYOUT, VERSION) {
-            let message = format!(
-                "the search in `{}` is of version {}, this is {VERSION}",
-                folder.display(),
-                found.version
-            );
-            let help = "finish it with the version that began it, or name another folder";
-            return Err(CampaignError::refused(message, help));
-        }
-        Ok(Some(manifest))
-    }
-}
 
 /// A design search, ready to evaluate any design. It can be shared by threads.
 pub struct DesignSearch {
@@ -76,14 +28,7 @@ impl DesignSearch {
     /// # Errors
     /// It is no folder of a design search, or what it holds is not what it was made of.
     pub fn open(folder: &Path) -> Result<Self, CampaignError> {
-        let Some(manifest) = SearchManifest::read(folder)? else {
-            let message = format!(
-                "`{}` is not the folder of a design search: it has no `{MANIFEST}`",
-                folder.display()
-            );
-            return Err(CampaignError::refused(message, ""));
-        };
-        let manifest = manifest.design_search;
+        let manifest = Manifest::open(folder, Study::DesignSearch)?;
         let files = read_input(folder, &manifest)?;
         let shown = folder.join(INPUT).join(SEARCH_FILE).display().to_string();
         let (specification, source) = read_search(&shown, text_of(&files, SEARCH_FILE))?;

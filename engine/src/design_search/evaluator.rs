@@ -5,8 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::definition::DesignSearch;
 use super::design::Design;
 use super::evaluation::{Evaluation, judge};
-use super::journal::{RunRecords, SearchJournal};
+use super::journal::{RunRecords, line, open_search_journal};
 use crate::campaign::CampaignError;
+use crate::campaign::line_journal::LineJournal;
 use crate::campaign::record::Record;
 use crate::campaign::worker_pool::do_all;
 use crate::plugin::Simulator;
@@ -30,7 +31,7 @@ pub(super) struct Evaluator<'a> {
     simulator: &'a Simulator,
     workers: usize,
     most: u64,
-    journal: SearchJournal,
+    journal: LineJournal,
     records: RunRecords,
     /// All evaluations in their order.
     pub(super) evaluations: Vec<Evaluation>,
@@ -49,7 +50,7 @@ impl<'a> Evaluator<'a> {
         (workers, most): (usize, u64),
         progress: &'a mut dyn FnMut(Progress),
     ) -> Result<Self, CampaignError> {
-        let (journal, records) = SearchJournal::open(search)?;
+        let (journal, records) = open_search_journal(search)?;
         Ok(Self {
             search,
             simulator,
@@ -124,7 +125,7 @@ impl<'a> Evaluator<'a> {
             job,
             |(number, record): (u64, Record)| -> Result<(), CampaignError> {
                 let (key, _, run) = missing[number as usize];
-                self.journal.add(key, &record)?;
+                self.journal.add(&line(key, &record))?;
                 self.records.insert((key.clone(), run), record);
                 self.new_runs += 1;
                 progress.new_runs = self.new_runs;
@@ -164,8 +165,8 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Hands the journal to the disk, and gives the evaluations.
-    pub(super) fn finish(mut self) -> Result<Vec<Evaluation>, CampaignError> {
-        self.journal.finish()?;
+    pub(super) fn finish(self) -> Result<Vec<Evaluation>, CampaignError> {
+        self.journal.synchronise()?;
         Ok(self.evaluations)
     }
 }

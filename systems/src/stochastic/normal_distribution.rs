@@ -48,6 +48,12 @@ pub fn inverse(below: f64, above: f64) -> f64 {
     }
 }
 
+/// The x with `u` below it, above 0 and below 1.
+#[must_use]
+pub fn quantile(u: f64) -> f64 {
+    inverse(u, 1.0 - u)
+}
+
 /// The x >= 0 with Q(x) = `tail`, a probability up to 1/2.
 fn upper_tail(tail: f64) -> f64 {
     let tail = tail.clamp(LEAST_TAIL, 0.5);
@@ -71,6 +77,14 @@ mod tests {
         assert!((inverse(0.975, 0.025) - 1.959_963_984_540_054).abs() < 1e-14);
         assert!((inverse(0.001, 0.999) + 3.090_232_306_167_813_5).abs() < 1e-14);
         assert!(inverse(0.5, 0.5).abs() < 1e-15);
+        // By programs of arbitrary precision.
+        for (u, x) in [
+            (0.841_344_746_068_542_9, 1.0),
+            (0.995, 2.575_829_303_548_900_4),
+            (1e-10, -6.361_340_902_404_056),
+        ] {
+            assert!((quantile(u) - x).abs() < 1e-13 * (1.0 + f64::abs(x)), "{u}");
+        }
     }
 
     #[test]

@@ -92,7 +92,7 @@ fn a_truncated_tail_keeps_its_digits() {
     };
     // density(6) / upper(6) is the mean.
     let density = libm::exp(-18.0) / libm::sqrt(2.0 * std::f64::consts::PI);
-    let mean = density / normal_below(-6.0);
+    let mean = density / normal_distribution::below(-6.0);
     assert!((moments(&tail).0 / mean - 1.0).abs() < 1e-5);
     assert!(number(&tail, 1e-15) >= 6.0 && number(&tail, 1.0 - 1e-15) <= 12.0);
 }

@@ -1,7 +1,7 @@
 //! What one realisation of a gust shows, beside what it should and how far off it may be.
 
 use super::design::GustDesign;
-use crate::stochastic::normal_distribution::inverse;
+use crate::stochastic::normal_distribution::quantile;
 use crate::stochastic::sampling_error::SamplingError;
 
 /// Correlations are followed until e^-this is left of them.
@@ -181,7 +181,7 @@ fn part_below(
     error: &SamplingError,
     probability: f64,
 ) -> Statistic {
-    let x = inverse(probability, 1.0 - probability);
+    let x = quantile(probability);
     let speed_m_s = design.velocity_m_s(x);
     let below = record
         .speeds
