@@ -5,6 +5,7 @@
 pub(crate) mod full_disk;
 pub(crate) mod refused;
 pub(crate) mod reproduced;
+pub(crate) mod searches;
 
 use std::fs;
 use std::path::PathBuf;
