@@ -400,10 +400,9 @@ mod bang_bang {
 fn a_plugin_brings_its_own_law() {
     let mut simulator = Simulator::new();
     simulator.add_plugin(&bang_bang::BangBangPlugin);
-    let text = STEP.replace("airspeed: Horizontal,", "airspeed: Horizontal,");
-    let start = text.find("\"helm\"").unwrap();
-    let end = text.find("    },\n    run:").unwrap();
-    let text = format!("{}{}", &text[..start], &text[end..]).replace(
+    let start = STEP.find("\"helm\"").unwrap();
+    let end = STEP.find("    },\n    run:").unwrap();
+    let text = format!("{}{}", &STEP[..start], &STEP[end..]).replace(
         "        \"sail\": (\n",
         "        \"sail\": (\n            BangBang: (period_s: 2, rudder_rad: 0.5),\n",
     );
