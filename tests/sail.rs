@@ -476,7 +476,7 @@ fn a_mode_grows_below_the_least_rudder_and_none_above() {
     let a = 2.0 * PI;
     // As in the report: the wing's lift and drag ahead, the rudder's lift in the downwash aft.
     let least = 1.5 * (a + 0.02) / (4.0 * a * (1.0 - 2.0 * a / (5.0 * PI)));
-    for (part, grows) in [(0.9, true), (0.98, true), (1.02, false)] {
+    for (part, grows) in [(0.7, true), (0.95, true), (1.02, false), (1.2, false)] {
         let area = format!("entities.sail.Sail.rudder.area_m2={:?}", part * least);
         let found = modes_of(
             STEP,
