@@ -13,6 +13,10 @@ use crate::scene_component::FieldReport;
 /// Which aircraft.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
 #[serde(rename = "aircraft", deny_unknown_fields)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one to an aircraft, and copied once"
+)]
 pub enum AircraftSpec {
     /// The Aerosonde of Beard and McLain: 11 kg, wing of 0.55 m^2. Its `Body` has the tensor
     /// (0.8244, 1.135, 1.759) kg m^2 with the element xz 0.1204.

@@ -116,14 +116,14 @@ impl TrimStart {
         } = *self;
         report.positive("airspeed_m_s", airspeed_m_s);
         report.finite("course_deg", course_deg);
-        if !(climb_deg.abs() < 60.0) {
+        if climb_deg.is_nan() || climb_deg.abs() >= 60.0 {
             report.add(
                 "climb_deg",
                 format!("`climb_deg` must lie within 60 deg of level, it is {climb_deg}"),
                 "",
             );
         }
-        if !(turn_deg_s.abs() < 90.0) {
+        if turn_deg_s.is_nan() || turn_deg_s.abs() >= 90.0 {
             report.add(
                 "turn_deg_s",
                 format!("`turn_deg_s` must lie within 90 deg/s, it is {turn_deg_s}"),

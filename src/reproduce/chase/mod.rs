@@ -241,6 +241,5 @@ fn wind_at(simulation: &Simulation, name: &str) -> Result<DVec3, SceneError> {
         .0
         .z;
     let wind = &simulation.world().resource::<EnvironmentModel>().wind;
-    wind.velocity_m_s(altitude_m)
-        .map_err(|outside| SceneError::plain(outside))
+    wind.velocity_m_s(altitude_m).map_err(SceneError::plain)
 }

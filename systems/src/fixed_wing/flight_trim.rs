@@ -15,9 +15,9 @@
 use aerobot_components::fixed_wing::aircraft::Aircraft;
 use aerobot_components::fixed_wing::controls::Controls;
 use glam::{DMat3, DVec3};
+use nalgebra::{SMatrix, SVector};
 use thiserror::Error;
 
-use super::dense_system::solve;
 use super::loads::{Loads, loads};
 use super::north_east_down::from_roll_pitch_yaw;
 use super::propeller::thrust;
@@ -230,9 +230,9 @@ impl Flier {
         flight: &SteadyFlight,
         x: &Unknowns,
         residual: &Unknowns,
-    ) -> Option<Vec<f64>> {
+    ) -> Option<SVector<f64, 6>> {
         const DIFFERENCE: f64 = 1e-6;
-        let mut jacobian = vec![vec![0.0; 6]; 6];
+        let mut jacobian = SMatrix::<f64, 6, 6>::zeros();
         for column in 0..6 {
             let at = |sign: f64| {
                 let mut moved = *x;
@@ -241,10 +241,10 @@ impl Flier {
             };
             let (above, below) = (at(1.0), at(-1.0));
             for row in 0..6 {
-                jacobian[row][column] = (above[row] - below[row]) / (2.0 * DIFFERENCE);
+                jacobian[(row, column)] = (above[row] - below[row]) / (2.0 * DIFFERENCE);
             }
         }
-        solve(jacobian, residual.to_vec())
+        jacobian.lu().solve(&SVector::from(*residual))
     }
 
     fn residual(&self, flight: &SteadyFlight, x: &Unknowns) -> Unknowns {

@@ -20,9 +20,9 @@
 //! as 1/s.
 
 use aerobot_components::fixed_wing::autopilot::{AutopilotSpec, LoopSpec};
+use nalgebra::{Complex, Matrix2, Vector2};
 use thiserror::Error;
 
-use super::dense_system::{Complex, exponential, over, solve, times};
 use super::linear_model::{Feedback, Input, LinearModel, Output};
 
 /// Gains of one loop: proportional, and of the rate (roll, pitch) or of the integral (the others).
@@ -83,7 +83,7 @@ pub fn design(model: &LinearModel, spec: &AutopilotSpec) -> Result<Gains, NoGain
         let hold = design.hold(s);
         let seen = design.seen(s, inner, input, &outputs);
         let seen = seen.ok_or_else(|| refused(name, of, AT_A_POLE))?;
-        two_gains(name, of, times(hold, seen[0]), times(hold, seen[1]))
+        two_gains(name, of, hold * seen[0], hold * seen[1])
     };
     let roll = [Output::Roll, Output::RollRate];
     gains.roll = on_surface("roll", spec.roll, Input::Aileron, roll, &gains)?;
@@ -92,11 +92,11 @@ pub fn design(model: &LinearModel, spec: &AutopilotSpec) -> Result<Gains, NoGain
 
     let on_error = |name, of: LoopSpec, input, output, drive: f64, inner: &Gains| {
         let s = pole(of);
-        let hold = times(design.hold(s), (drive, 0.0));
+        let hold = design.hold(s) * drive;
         let seen = design.seen(s, inner, input, &[output]);
         let seen = seen.ok_or_else(|| refused(name, of, AT_A_POLE))?;
-        let seen = times(hold, seen[0]);
-        two_gains(name, of, seen, over(seen, s))
+        let seen = hold * seen[0];
+        two_gains(name, of, seen, seen / s)
     };
     gains.course = on_error(
         "course",
@@ -125,17 +125,22 @@ pub fn design(model: &LinearModel, spec: &AutopilotSpec) -> Result<Gains, NoGain
     Ok(gains)
 }
 
+/// e^z, the same bits on any machine.
+pub(super) fn exponential(z: Complex<f64>) -> Complex<f64> {
+    let (sin, cos) = libm::sincos(z.im);
+    Complex::new(cos, sin) * libm::exp(z.re)
+}
+
 /// The pole in the upper half plane that a loop is asked for.
-fn pole(of: LoopSpec) -> Complex {
+fn pole(of: LoopSpec) -> Complex<f64> {
     let (w, zeta) = (of.frequency_rad_s, of.damping);
-    (-zeta * w, w * (1.0 - zeta * zeta).sqrt())
+    Complex::new(-zeta * w, w * (1.0 - zeta * zeta).sqrt())
 }
 
 impl Design<'_> {
-    fn hold(&self, s: Complex) -> Complex {
+    fn hold(&self, s: Complex<f64>) -> Complex<f64> {
         let t = self.spec.period_s;
-        let late = exponential((-s.0 * t, -s.1 * t));
-        over((1.0 - late.0, -late.1), (s.0 * t, s.1 * t))
+        (1.0 - exponential(-s * t)) / (s * t)
     }
 
     /// Transfer functions at s with the inner loops of the same axis closed whose gains are known, and the yaw
@@ -143,17 +148,16 @@ impl Design<'_> {
     /// loop is never inside another.
     fn seen(
         &self,
-        s: Complex,
+        s: Complex<f64>,
         inner: &Gains,
         input: Input,
         outputs: &[Output],
-    ) -> Option<Vec<Complex>> {
+    ) -> Option<Vec<Complex<f64>>> {
         let hold = self.hold(s);
         let damper = &self.spec.yaw_damper;
-        let washout = over(s, (s.0 + damper.washout_rad_s, s.1));
-        let real = |gain: f64| times(hold, (gain, 0.0));
-        let integral = over((inner.airspeed.second, 0.0), s);
-        let airspeed = (inner.airspeed.proportional + integral.0, integral.1);
+        let washout = s / (s + damper.washout_rad_s);
+        let real = |gain: f64| hold * gain;
+        let airspeed = inner.airspeed.proportional + inner.airspeed.second / s;
         let loops = [
             (Input::Aileron, Output::Roll, real(inner.roll.proportional)),
             (Input::Aileron, Output::RollRate, real(inner.roll.second)),
@@ -161,7 +165,7 @@ impl Design<'_> {
             (
                 Input::Rudder,
                 Output::YawRate,
-                times(times(hold, washout), (-damper.gain_s, 0.0)),
+                hold * washout * -damper.gain_s,
             ),
             (
                 Input::Elevator,
@@ -169,7 +173,7 @@ impl Design<'_> {
                 real(inner.pitch.proportional),
             ),
             (Input::Elevator, Output::PitchRate, real(inner.pitch.second)),
-            (Input::Throttle, Output::Airspeed, times(hold, airspeed)),
+            (Input::Throttle, Output::Airspeed, hold * airspeed),
         ]
         .map(|(input, output, gain)| Feedback {
             input,
@@ -200,11 +204,13 @@ fn refused(name: &'static str, of: LoopSpec, reason: &'static str) -> NoGains {
 fn two_gains(
     name: &'static str,
     of: LoopSpec,
-    a: Complex,
-    b: Complex,
+    a: Complex<f64>,
+    b: Complex<f64>,
 ) -> Result<LoopGains, NoGains> {
-    let matrix = vec![vec![a.0, b.0], vec![a.1, b.1]];
-    let found = solve(matrix, vec![-1.0, 0.0])
+    let matrix = Matrix2::new(a.re, b.re, a.im, b.im);
+    let found = matrix
+        .lu()
+        .solve(&Vector2::new(-1.0, 0.0))
         .ok_or_else(|| refused(name, of, "its two gains would do the same there"))?;
     let gains = LoopGains {
         proportional: found[0],

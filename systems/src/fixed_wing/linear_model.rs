@@ -13,8 +13,8 @@
 
 use aerobot_components::fixed_wing::controls::Controls;
 use glam::DVec3;
+use nalgebra::{Complex, SMatrix, SVector};
 
-use super::dense_system::{Complex, solve_complex, times};
 use super::flight_trim::{Flier, TrimmedFlight};
 use super::north_east_down::from_roll_pitch_yaw;
 
@@ -65,7 +65,7 @@ pub struct Feedback {
     /// What it reads.
     pub output: Output,
     /// Its gain at the frequency in question.
-    pub gain: Complex,
+    pub gain: Complex<f64>,
 }
 
 /// The linear model about one trim.
@@ -157,36 +157,31 @@ impl LinearModel {
     #[must_use]
     pub fn transfer(
         &self,
-        s: Complex,
+        s: Complex<f64>,
         loops: &[Feedback],
         input: Input,
         outputs: &[Output],
-    ) -> Option<Vec<Complex>> {
-        let mut matrix: Vec<Vec<Complex>> = self
-            .a
-            .iter()
-            .map(|row| row.iter().map(|a| (-a, 0.0)).collect())
-            .collect();
-        for (i, row) in matrix.iter_mut().enumerate() {
-            row[i] = (row[i].0 + s.0, row[i].1 + s.1);
+    ) -> Option<Vec<Complex<f64>>> {
+        let mut matrix = SMatrix::<Complex<f64>, STATES, STATES>::from_fn(|row, column| {
+            Complex::from(-self.a[row][column])
+        });
+        for i in 0..STATES {
+            matrix[(i, i)] += s;
         }
         for feedback in loops {
             let (b, c) = (&self.b[feedback.input as usize], self.row(feedback.output));
-            for (row, b) in matrix.iter_mut().zip(b) {
-                for (element, c) in row.iter_mut().zip(c) {
-                    element.0 += b * feedback.gain.0 * c;
-                    element.1 += b * feedback.gain.1 * c;
+            for (row, b) in b.iter().enumerate() {
+                for (column, c) in c.iter().enumerate() {
+                    matrix[(row, column)] += feedback.gain * (b * c);
                 }
             }
         }
-        let right: Vec<Complex> = self.b[input as usize].iter().map(|b| (*b, 0.0)).collect();
-        let state = solve_complex(&matrix, &right)?;
+        let b = &self.b[input as usize];
+        let right = SVector::<Complex<f64>, STATES>::from_fn(|row, _| Complex::from(b[row]));
+        let state = matrix.lu().solve(&right)?;
         let read = |output: &Output| {
-            let terms = self.row(*output);
-            terms.iter().zip(&state).fold((0.0, 0.0), |sum, (c, x)| {
-                let term = times((*c, 0.0), *x);
-                (sum.0 + term.0, sum.1 + term.1)
-            })
+            let row = self.row(*output);
+            row.iter().zip(&state).map(|(c, x)| x * *c).sum()
         };
         Some(outputs.iter().map(read).collect())
     }

@@ -9,7 +9,6 @@
 pub mod aerodynamics;
 pub mod autopilot;
 pub mod chase;
-pub mod dense_system;
 pub mod flight_trim;
 pub mod gains;
 pub mod guidance;

@@ -2,11 +2,11 @@
 //! of the nonlinear, sampled flight to a step of its command.
 
 use aerobot_components::fixed_wing::autopilot::{AutopilotSpec, LoopSpec};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use super::flight::{Flight, aerosonde};
 use crate::fixed_wing::autopilot::{Command, LateralCommand, VerticalCommand, course_rad};
-use crate::fixed_wing::dense_system::{Complex, exponential, over, times};
+use crate::fixed_wing::gains::exponential;
 use crate::fixed_wing::north_east_down::from_roll_pitch_yaw;
 
 const AIRSPEED_M_S: f64 = 25.0;
@@ -57,36 +57,39 @@ fn response(spec: AutopilotSpec, stepped: Stepped, duration_s: f64) -> Vec<f64> 
 
 /// The pole of a series sampled every `interval_s` that is nearest to `guess`: the linear recurrence of `order`
 /// that the series fulfils best (Prony), and the root of its polynomial that Newton's method finds from there.
-fn measured_pole(series: &[f64], interval_s: f64, order: usize, guess: Complex) -> Complex {
+fn measured_pole(
+    series: &[f64],
+    interval_s: f64,
+    order: usize,
+    guess: Complex<f64>,
+) -> Complex<f64> {
     // Differences, so that a constant is no mode.
     let steps: Vec<f64> = series.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let rows = steps.len() - order;
     let matrix = DMatrix::from_fn(rows, order, |row, k| steps[row + order - 1 - k]);
     let right = DVector::from_fn(rows, |row, _| steps[row + order]);
     let c = matrix.svd(true, true).solve(&right, 1e-13).unwrap();
-    let mut z = exponential((guess.0 * interval_s, guess.1 * interval_s));
+    let mut z = exponential(guess * interval_s);
     for _ in 0..100 {
         // Horner, for z^n - c_1 z^(n-1) - .. and its derivative.
-        let (mut value, mut slope) = ((1.0, 0.0), (0.0, 0.0));
+        let (mut value, mut slope) = (Complex::from(1.0), Complex::from(0.0));
         for coefficient in c.iter() {
-            slope = times(slope, z);
-            slope = (slope.0 + value.0, slope.1 + value.1);
-            value = times(value, z);
-            value.0 -= coefficient;
+            slope = slope * z + value;
+            value = value * z - coefficient;
         }
-        let step = over(value, slope);
-        z = (z.0 - step.0, z.1 - step.1);
+        z -= value / slope;
     }
-    let size = (z.0 * z.0 + z.1 * z.1).sqrt();
-    (size.ln() / interval_s, z.1.atan2(z.0) / interval_s)
+    Complex::new(z.norm().ln(), z.arg()) / interval_s
 }
 
 /// Natural frequency and damping of every loop, of the shipped bandwidths and of others, within 1 % and 0.01.
 #[test]
 fn every_loop_has_the_bandwidth_and_damping_it_is_asked_for() {
-    let mut shipped = AutopilotSpec::default();
-    // The ramp on the way to an altitude is no part of the loop.
-    shipped.climb_limit_m_s = 1e6;
+    let shipped = AutopilotSpec {
+        // The ramp on the way to an altitude is no part of the loop.
+        climb_limit_m_s: 1e6,
+        ..AutopilotSpec::default()
+    };
     let mut other = shipped;
     let with = |frequency_rad_s, damping| LoopSpec {
         frequency_rad_s,
@@ -110,14 +113,14 @@ fn every_loop_has_the_bandwidth_and_damping_it_is_asked_for() {
             let every = (interval_s / spec.period_s).round() as usize;
             let series = response(spec, stepped, 12.0 / w);
             let series: Vec<f64> = series.into_iter().step_by(every).collect();
-            let guess = (
+            let guess = Complex::new(
                 -asked.damping * w,
                 w * (1.0 - asked.damping * asked.damping).sqrt(),
             );
             // Modes that are seen beside the pair of the loop: three to five.
             let pole = measured_pole(&series, interval_s, 7, guess);
-            let frequency = (pole.0 * pole.0 + pole.1 * pole.1).sqrt();
-            let damping = -pole.0 / frequency;
+            let frequency = pole.norm();
+            let damping = -pole.re / frequency;
             println!(
                 "{stepped:?}: {frequency:.4} rad/s, damping {damping:.4}; asked {w}, {}",
                 asked.damping
