@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "every test file uses its own part")]
 
 pub(crate) mod dumbbell;
+pub(crate) mod small_rotorcraft;
 pub(crate) mod torsional_pendulum;
 
 use std::path::{Path, PathBuf};

@@ -1,7 +1,8 @@
 //! A latch that closes and opens. Closed, the rider is no part of the state: its mass is carried by the other body
-//! ([`aerobot_systems::docking::ridden_body`]), whichever formulation moves it. Closing keeps momentum and angular momentum
-//! ([`aerobot_systems::docking::impact`]); where links hold the carrier, what they do not allow of its new motion is
-//! taken off by their impulses as the state is gathered. Opening changes no velocity, and so nothing else.
+//! ([`aerobot_systems::docking::ridden_body`]), whichever formulation moves it. Closing keeps momentum and angular
+//! momentum ([`aerobot_systems::docking::impact`]); where links hold the carrier, what they do not allow of its new
+//! motion is taken off by their impulses as the state is gathered. Opening changes no velocity, and so nothing
+//! else.
 
 use aerobot_components::body::Anchor;
 use aerobot_components::docking::{Docked, DockingPhase, LatchState};

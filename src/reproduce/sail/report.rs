@@ -20,8 +20,8 @@ lift slope       wing   downwash      alpha_w/delta  side force/(q delta)  yaw s
 ";
 
 const WORDS: &str = "
-With the wing ahead, as the paper's words can be read, the right sign shows a sail that turns away from where it goes; the
-printed sign hides that. With the wing aft it is stable with either.
+With the wing ahead, as the paper's words can be read, the right sign shows a sail that turns away from where it goes;
+the printed sign hides that. With the wing aft it is stable with either.
 ";
 
 const RESPONSES: &str = "
@@ -32,8 +32,8 @@ the commanded deflection delta), sampled at 2 Hz.
 ";
 
 const ENDING: &str = "
-The paper shows the system at its target \"with some oscillations due to the used control law\". They are here too: with y
-alone fed back nothing but drag and the tether's lag damp the drift of the whole, least where the line has no drag.
+The paper shows the system at its target \"with some oscillations due to the used control law\". They are here too: with
+y alone fed back nothing but drag and the tether's lag damp the drift of the whole, least where the line has no drag.
 What is fed back (the paper does not say whether the sail's y or the balloon's) and the tether's drag, which it does not
 give, change the overshoot by more than the sign of the downwash does. `scenes/sail_hold_latitude.ron` has a law that
 feeds back velocities too.

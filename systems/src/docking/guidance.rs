@@ -8,10 +8,10 @@
 //! ```
 //!
 //! p, v, a the port as far as it is known, g the gap (m), V_c the closing speed (m/s), e the lateral error (m): far
-//! beside the axis the drone waits until it is on it. n' is what is seen of the turning of the axis, smoothed over a
-//! second, without which the drone would trail behind a port that turns. An approach is missed if e passes its limit, if the plane of the
-//! port is passed, or if it takes too long; then the drone backs off to the standoff and tries again. What cannot be
-//! reached is told, with the reason, and the drone drifts with the air.
+//! beside the axis the drone waits until it is on it. n' is what is seen of the turning of the axis, smoothed over
+//! a second, without which the drone would trail behind a port that turns. An approach is missed if e passes its
+//! limit, if the plane of the port is passed, or if it takes too long; then the drone backs off to the standoff and
+//! tries again. What cannot be reached is told, with the reason, and the drone drifts with the air.
 //!
 //! Assumptions: the straight way to the standoff is free; the drone comes from the side to which the port faces.
 

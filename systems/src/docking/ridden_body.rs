@@ -1,5 +1,5 @@
-//! A body that rides on another: its state follows from that of the carrier, which has its mass; the forces on it act on
-//! the carrier; and what the latch between them carries.
+//! A body that rides on another: its state follows from that of the carrier, which has its mass; the forces on it
+//! act on the carrier; and what the latch between them carries.
 //!
 //! ```text
 //! x = p + R r,  v = v_c + R (omega x r),  a = a_c + R (alpha x r + omega x (omega x r))

@@ -1,9 +1,10 @@
 //! Sums of energy and power over everything that is free to move.
 //!
-//! Kinetic: sum 1/2 m v^2 + sum 1/2 omega' J omega. Potential: sum m phi(z) + sum 1/2 k (L - L0)^2 over
-//! taut segments + sum 1/2 (GJ / L) phi^2 of tethers that resist being twisted by phi. Bodies and nodes count, and the masses that tethers put on bodies; masses on anchors
-//! do not. Of a link that is a rod, half of whose mass m counts at each end, m/12 v^2 is taken off, v the
-//! velocity of one end against the other. Rigid links store nothing.
+//! Kinetic: sum 1/2 m v^2 + sum 1/2 omega' J omega. Potential: sum m phi(z) + sum 1/2 k (L - L0)^2 over taut
+//! segments + sum 1/2 (GJ / L) phi^2 of tethers that resist being twisted by phi. Bodies and nodes count, and the
+//! masses that tethers put on bodies; masses on anchors do not. Of a link that is a rod, half of whose mass m
+//! counts at each end, m/12 v^2 is taken off, v the velocity of one end against the other. Rigid links store
+//! nothing.
 
 use aerobot_components::body::Anchor;
 use aerobot_components::docking::Docked;
