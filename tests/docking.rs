@@ -154,6 +154,47 @@ fn what_cannot_be_reached_is_told() {
     }
 }
 
+/// A port holds one body: the drone that comes second is told that it is taken, and does not close its latch.
+#[test]
+fn a_port_holds_one_drone() {
+    let drone = |y_m: f64| {
+        let pose = format!("Pose: (position_m: (0, {y_m}, 54_000)),");
+        let drone = drone("", &pose);
+        format!(
+            r#"({drone} DockingPort: (at_m: (0.5, 0, 0), axis: (1, 0, 0)), Latch: (to: "port"), Docking: ())"#
+        )
+    };
+    let text = format!(
+        r#"(
+    name: "two",
+    environment: (gravity: Constant({G}), atmosphere: Uniform(density_kg_m3: {DENSITY})),
+    entities: {{
+        "port": (
+            Moving: (position_m: (40, 5, 54_000), velocity_m_s: (1, 0, 0)),
+            DockingPort: (at_m: (0, 0, 0), axis: (-1, 0, 0)),
+        ),
+        "drone": {},
+        "late": {},
+    }},
+    run: (duration_s: 120, output_every_s: 1, integrator: Auto(accuracy_m: 0.01)),
+)"#,
+        drone(0.0),
+        drone(150.0)
+    );
+    let (results, summary) = summary_of(&text, &[]);
+    let of = |name: &str| {
+        let mut own = summary
+            .events
+            .iter()
+            .rev()
+            .filter(|event| event.entity == name);
+        own.next().map(|event| &*event.kind)
+    };
+    assert_eq!(of("drone"), Some("docked"));
+    assert_eq!(of("late"), Some("unreachable: port taken"));
+    assert_eq!(tail(&results, "docking_phase"), 4.0);
+}
+
 /// Released on command the drone backs off, keeps station in front of the port, and stays released.
 #[test]
 fn a_drone_is_released_on_command() {

@@ -143,7 +143,7 @@ impl FixedWing {
 
 impl SceneComponent for FixedWing {
     const NAME: &'static str = "FixedWing";
-    const EXCLUDES: &'static [&'static str] = &["Fixed", "Moving", "Motion"];
+    const EXCLUDES: &'static [&'static str] = &["Fixed", "Moving", "Motion", "Rotorcraft"];
     const REQUIRES: &'static [&'static [&'static str]] = &[&["Body"], &["Pose"]];
 
     fn check(&self, report: &mut FieldReport) {

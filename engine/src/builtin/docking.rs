@@ -247,6 +247,13 @@ fn meets(world: &mut World, body: Entity) -> Option<f64> {
     if !state.is_armed || world.get::<Docked>(body).is_some() {
         return None;
     }
+    let mut riders = world.query::<&Docked>();
+    if riders
+        .iter(world)
+        .any(|docked| docked.carrier == state.target)
+    {
+        return None;
+    }
     let mut ports = world.query::<PortCarrier>();
     let own = ports.get(world, body).ok()?.motion();
     let target = ports.get(world, state.target).ok()?.motion();

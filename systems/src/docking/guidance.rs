@@ -64,7 +64,11 @@ pub enum Unreachable {
     Missed {
         /// How many.
         approaches: u32,
+        /// Angle by which the ports did not face each other at the last, rad.
+        misalignment_rad: f64,
     },
+    /// Another body rides on the port.
+    Taken,
 }
 
 impl Unreachable {
@@ -76,6 +80,7 @@ impl Unreachable {
             Self::TooFast { .. } => "too fast",
             Self::NotSeen => "not seen",
             Self::Missed { .. } => "approaches missed",
+            Self::Taken => "port taken",
         }
     }
 }
@@ -95,7 +100,14 @@ impl fmt::Display for Unreachable {
                 "it comes no nearer to a port that moves through the air at {airspeed_m_s:.1} m/s"
             ),
             Self::NotSeen => write!(formatter, "the port is not within the range of its sensor"),
-            Self::Missed { approaches } => write!(formatter, "{approaches} approaches were missed"),
+            Self::Missed {
+                approaches,
+                misalignment_rad,
+            } => write!(
+                formatter,
+                "{approaches} approaches were missed, at the last with the ports {misalignment_rad:.2} rad from facing each other"
+            ),
+            Self::Taken => write!(formatter, "another body rides on the port"),
         }
     }
 }
@@ -145,6 +157,8 @@ pub struct View {
     pub flight: FlightStatus,
     /// Velocity of the air about the drone, m/s.
     pub wind_m_s: DVec3,
+    /// Whether another body rides on the port.
+    pub taken: bool,
 }
 
 impl Guidance {
@@ -185,6 +199,10 @@ impl Guidance {
             return drift;
         };
         if matches!(self.phase, DockingPhase::Unreachable | DockingPhase::Docked) {
+            return drift;
+        }
+        if view.taken && self.phase != DockingPhase::Released {
+            self.give_up(Unreachable::Taken, view.time_s);
             return drift;
         }
         if self.phase == DockingPhase::Search {
@@ -282,7 +300,7 @@ impl Guidance {
         if error_m > STATION_LOST * docking.station_error_m {
             self.enter(DockingPhase::Approach, view.time_s);
         } else if view.time_s - self.since_s > docking.patience_s {
-            self.miss(docking, view.time_s);
+            self.miss(docking, view, seen);
         } else if error_m < docking.station_error_m {
             self.steady_s += view.period_s;
             if self.steady_s >= docking.station_s {
@@ -305,7 +323,7 @@ impl Guidance {
             || ahead_m < PASSED_M
             || view.time_s - self.since_s > longest_s
         {
-            self.miss(docking, view.time_s);
+            self.miss(docking, view, seen);
             return 0.0;
         }
         let gate = (1.0 - lateral_m / docking.lateral_gate_m).max(0.0);
@@ -319,12 +337,16 @@ impl Guidance {
         }
     }
 
-    fn miss(&mut self, docking: &Docking, time_s: f64) {
+    fn miss(&mut self, docking: &Docking, view: &View, seen: &PortEstimate) {
+        let time_s = view.time_s;
         self.missed += 1;
         self.news.push(News::MissedApproach);
         if self.missed >= docking.attempts {
-            let approaches = self.missed;
-            self.give_up(Unreachable::Missed { approaches }, time_s);
+            let reason = Unreachable::Missed {
+                approaches: self.missed,
+                misalignment_rad: view.own.axis.angle_between(-seen.motion.axis),
+            };
+            self.give_up(reason, time_s);
         } else {
             self.enter(DockingPhase::Approach, time_s);
         }
@@ -358,6 +380,7 @@ pub fn guide(
         &mut FlightReference,
     )>,
     targets: Query<(PortCarrier, &Acceleration)>,
+    riders: Query<&Docked>,
 ) {
     for (computer, sampling) in &computers {
         if !sampling.is_due(clock.time_s) {
@@ -381,6 +404,7 @@ pub fn guide(
             seen,
             flight: *state.0,
             wind_m_s: state.1.velocity_m_s,
+            taken: docked.is_none() && riders.iter().any(|rider| rider.carrier == latch.target),
         };
         *reference = guidance.tick(docking, port, &view);
         latch.is_armed = guidance.phase == DockingPhase::Contact && docked.is_none();

@@ -32,6 +32,8 @@ pub enum Hopeless {
     OutOfThrust,
     /// The pitch is at its limit, and the station draws away.
     TooSteep,
+    /// In the end game the target draws away from afar.
+    EndGame,
 }
 
 impl Hopeless {
@@ -43,9 +45,13 @@ impl Hopeless {
             Self::TooSlow => "target unreachable: slower than the drone can fly",
             Self::OutOfThrust => "target unreachable: out of thrust",
             Self::TooSteep => "target unreachable: climbs or sinks too steeply",
+            Self::EndGame => "target unreachable: draws away in the end game",
         }
     }
 }
+
+/// A target that draws away from farther than this part of the distance at which the end game begins was not passed.
+const PASSED_PART: f64 = 0.25;
 
 /// What is seen of a pursuit at a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,6 +110,15 @@ impl Chase {
         self.closest_m = Some(closest.min(seen.range_m));
         match self.state {
             ChaseState::Passed => return None,
+            ChaseState::EndGame
+                if seen.closing_m_s <= 0.0
+                    && seen.range_m > rules.end_game_m.unwrap_or(0.0) * PASSED_PART =>
+            {
+                self.state = ChaseState::Unreachable;
+                self.reason = Some(Hopeless::EndGame);
+                self.doubt_s = 0.0;
+                return self.reason.map(Hopeless::event);
+            }
             ChaseState::EndGame if seen.closing_m_s <= 0.0 => {
                 self.state = ChaseState::Passed;
                 return Some("target passed");
@@ -280,5 +295,17 @@ mod tests {
         };
         assert_eq!(advance(&mut chase, past, &ends, 1.0), ["target passed"]);
         assert_eq!(chase.closest_m, Some(0.7));
+        let falls_back = Seen {
+            closing_m_s: -1.0,
+            range_m: 51.0,
+            ..NEAR
+        };
+        let mut chase = Chase::default();
+        assert_eq!(advance(&mut chase, NEAR, &ends, 1.0), ["end game"]);
+        assert_eq!(
+            advance(&mut chase, falls_back, &ends, 1.0),
+            [Hopeless::EndGame.event()]
+        );
+        assert_eq!(chase.state, ChaseState::Unreachable);
     }
 }

@@ -46,6 +46,7 @@ fn view(time_s: f64, at: DVec3) -> View {
             is_tilt_limited: false,
         },
         wind_m_s: DVec3::ZERO,
+        taken: false,
     }
 }
 
@@ -92,7 +93,10 @@ fn missed_approaches_back_off_and_end() {
     guidance.tick(&docking(), &PORT, &view(20.0, at + 1.1 * DVec3::Y));
     assert_eq!(guidance.phase, DockingPhase::Unreachable);
     let last = guidance.news.last().copied();
-    let missed = Unreachable::Missed { approaches: 2 };
+    let missed = Unreachable::Missed {
+        approaches: 2,
+        misalignment_rad: 0.0,
+    };
     assert_eq!(last, Some(News::Unreachable(missed)));
 }
 
