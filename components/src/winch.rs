@@ -4,6 +4,7 @@ use bevy_ecs::component::Component;
 use bevy_ecs::entity::Entity;
 use serde::Deserialize;
 
+use crate::actuator::ActuatorLimits;
 use crate::scene_component::{FieldReport, SceneComponent};
 use crate::tether::TetherSide;
 
@@ -18,7 +19,14 @@ pub struct Winch {
     /// Length of unstretched line on the drum at the start, m; reeling in may add to it.
     #[serde(default)]
     pub stored_m: f64,
+    /// What turns the drum at the command of a controller or a schedule: an actuator [`DRUM_NAME`] whose value
+    /// is the rate at which line leaves the drum, m/s. It follows at once; events turn a drum without it.
+    #[serde(default)]
+    pub drive: Option<ActuatorLimits>,
 }
+
+/// Name of the actuator of a winch with a drive.
+pub const DRUM_NAME: &str = "drum";
 
 fn at_from() -> TetherSide {
     TetherSide::From
@@ -30,6 +38,23 @@ impl SceneComponent for Winch {
 
     fn check(&self, report: &mut FieldReport) {
         report.non_negative("stored_m", self.stored_m);
+        let Some(drive) = &self.drive else { return };
+        report.within("drive", |report| {
+            report.non_negative("limit", drive.limit);
+            let late = [
+                ("lag_s", drive.lag_s != 0.0),
+                ("rate_per_s", drive.rate_per_s.is_some()),
+            ];
+            for (field, given) in late {
+                if given {
+                    report.add(
+                        field,
+                        format!("a drum turns as it is commanded, without `{field}`"),
+                        "leave it out; a controller's `rate_limit_per_s` bounds how its command changes",
+                    );
+                }
+            }
+        });
     }
 }
 

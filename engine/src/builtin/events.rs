@@ -263,6 +263,13 @@ fn check_winch(
         }
         return;
     };
+    if winch.drive.is_some() {
+        report.add(
+            "tether",
+            format!("the winch of `{}` has a drive, which turns it", entity.name),
+            "leave out the `drive`, or command it by a `Schedule` or a `Controller`",
+        );
+    }
     let reels_in = |event: &EventSpec| {
         matches!(&event.action, Action::Reel { tether, rate_m_s, .. }
             if *tether == entity.name && *rate_m_s < 0.0)

@@ -1,21 +1,27 @@
 //! Winches: what pays tethers out and reels them in.
 
+use aerobot_components::actuator::ActuatorChannels;
+use aerobot_components::control::{Commands, Schedule};
 use aerobot_components::run::Formulation;
 use aerobot_components::scene_component::FieldReport;
 use aerobot_components::state::{Acceleration, FirstOrderState, Force, Mass, Position, Velocity};
 use aerobot_components::tether::{Attachment, Lumping, Tether, TetherParts, TetherSide};
-use aerobot_components::winch::{Reeled, ReeledLine, Winch};
+use aerobot_components::winch::{DRUM_NAME, Reeled, ReeledLine, Winch};
 use aerobot_systems::dynamics::rigid_body::CarriedMass;
 use aerobot_systems::dynamics::winch::{CarriesReeledLine, carry, pay_out, take_up};
 use aerobot_systems::forces::reeled_spring::{reeled_spring, reeled_spring_derivatives};
 use aerobot_systems::instruments::winch::{ReelPower, WinchWork, winch_power};
+use bevy_ecs::entity::Entity;
 use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::world::World;
 
+use super::actuators::{add_actuator, scheduled_start};
 use super::tethers;
 use crate::plugin::{Plugin, Simulator};
 use crate::scene::{Scene, SetupError};
 use crate::schedule::Phase;
+use crate::topology_change::apply;
+use crate::topology_change::driving::{self, Drive};
 use crate::topology_change::reeling::SHORTEST_PART;
 use crate::world::{SceneEntities, next_spawn_order};
 
@@ -27,7 +33,9 @@ impl Plugin for WinchesPlugin {
         simulator
             .register_component::<Winch>()
             .add_check(check)
+            .add_check(check_commands)
             .add_setup(set_up)
+            .add_systems_if(Phase::Control, has_drive, || turn_drums)
             .add_systems_for::<Winch, _, _>(Phase::Prepare, || (pay_out, carry).chain())
             .add_systems_in(Phase::Forces, has_springs, || reeled_spring)
             .add_systems_for::<Winch, _, _>(Phase::Forces, || take_up)
@@ -43,6 +51,21 @@ pub struct WinchPowerPlugin;
 impl Plugin for WinchPowerPlugin {
     fn build(&self, simulator: &mut Simulator) {
         simulator.add_systems_for::<Winch, _, _>(Phase::Dynamics, || winch_power);
+    }
+}
+
+/// Whether a controller or a schedule may turn a drum.
+fn has_drive(scene: &Scene) -> bool {
+    scene
+        .with::<Winch>()
+        .any(|(_, winch)| winch.drive.is_some())
+}
+
+/// Turns drums as they have been commanded now.
+fn turn_drums(world: &mut World) {
+    let changes = driving::due(world);
+    if !changes.is_empty() {
+        apply(world, &changes);
     }
 }
 
@@ -75,6 +98,24 @@ fn check(scene: &Scene, report: &mut FieldReport) {
     }
 }
 
+/// The rate of a drum is held from one command to the next.
+fn check_commands(scene: &Scene, report: &mut FieldReport) {
+    for (entity, schedule) in scene.with::<Schedule>() {
+        let (owner, name) = &schedule.actuator;
+        let is_drum = name == DRUM_NAME
+            && scene
+                .entity(owner)
+                .is_some_and(|owner| owner.has::<Winch>());
+        if is_drum && matches!(schedule.commands, Commands::Ramps(_)) {
+            report.add(
+                &format!("{}.commands", entity.path::<Schedule>()),
+                "the rate of a drum is held from one command to the next",
+                "give `Steps([(time in s, rate in m/s), ..])`",
+            );
+        }
+    }
+}
+
 fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
     for (entity, winch) in scene.with::<Winch>() {
         let Some(id) = world.resource::<SceneEntities>().get(&entity.name) else {
@@ -86,27 +127,39 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
         ) else {
             continue;
         };
-        mount(world, (id, tether), &parts, winch);
+        let line = mount(world, (id, tether), &parts, winch);
+        let Some((limits, line)) = winch.drive.zip(line) else {
+            continue;
+        };
+        let name = (entity.name.as_str(), DRUM_NAME);
+        let start = scheduled_start(scene, &entity.name, DRUM_NAME);
+        if let Some(actuator) = add_actuator(world, name, limits, DRUM_CHANNELS, start) {
+            world.entity_mut(line).insert(Drive::by(actuator));
+        }
     }
     Ok(())
 }
 
-/// Puts a winch at its end of a tether.
+/// Channels of a drum with a drive.
+const DRUM_CHANNELS: ActuatorChannels = ActuatorChannels {
+    value: "reel_rate_m_s",
+    command: "reel_rate_command_m_s",
+};
+
+/// Puts a winch at its end of a tether; the line that it pays out.
 fn mount(
     world: &mut World,
-    (id, tether): (bevy_ecs::entity::Entity, &Tether),
+    (id, tether): (Entity, &Tether),
     parts: &TetherParts,
     winch: &Winch,
-) {
+) -> Option<Entity> {
     let (points, segments) = (&parts.points, &parts.segments);
     let last = points.len() - 1;
     let (near, far, segment) = match winch.end {
         TetherSide::From => (points[0], points[1], segments[0]),
         TetherSide::To => (points[last], points[last - 1], segments[last - 1]),
     };
-    let Some(attachment) = world.get::<Attachment>(near).copied() else {
-        return;
-    };
+    let attachment = world.get::<Attachment>(near).copied()?;
     let nominal_m = tether.segment_length_m();
     let line_kg_m = tether.mass_kg() / tether.length_m;
     let drum_kg = line_kg_m * winch.stored_m;
@@ -161,4 +214,5 @@ fn mount(
     });
     let order = next_spawn_order(world);
     world.spawn((order, WinchWork(line), steady(0.0)));
+    Some(line)
 }

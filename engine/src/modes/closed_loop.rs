@@ -88,7 +88,7 @@ impl OpenLoop<'_> {
             let actuator = name.unwrap_or_default();
             let Some(command) = self.command_column(bound.actuator) else {
                 notes.push(format!(
-                    "the loop of `{}` is not closed here: `{actuator}` moves nothing, or has no lag (give `lag_s`)",
+                    "the loop of `{}` is not closed here: `{actuator}` moves nothing that modes know, or has no lag (a rudder: give `lag_s`)",
                     entity.name
                 ));
                 continue;

@@ -6,6 +6,7 @@
 
 mod cutting;
 mod dividing;
+pub(crate) mod driving;
 mod latching;
 pub(crate) mod reeling;
 mod renumbering;
@@ -33,6 +34,8 @@ pub(crate) enum Change {
     Event(Action),
     /// What a winch does on its way, to the line of this entity.
     Winch(Entity, reeling::Turn),
+    /// The winch with a drive at the line of this entity turns at another rate, m/s.
+    Drive(Entity, f64),
     /// The latch of this body closes.
     Latch(Entity),
 }
@@ -48,6 +51,7 @@ pub(crate) fn apply(world: &mut World, changes: &[Change]) -> bool {
             match change {
                 Change::Event(action) => act(world, action),
                 Change::Winch(line, turn) => reeling::turn(world, *line, *turn),
+                Change::Drive(line, rate_m_s) => driving::turn(world, *line, *rate_m_s),
                 Change::Latch(body) => latching::close(world, *body),
             }
         }

@@ -15,7 +15,7 @@ use bevy_ecs::entity::Entity;
 use bevy_ecs::system::RunSystemOnce;
 use bevy_ecs::world::World;
 
-use super::{Change, dividing, log};
+use super::{Change, dividing, driving, log};
 use crate::world::{Edges, EntityName, SceneEntities, Warnings};
 
 /// The segment at a winch is divided when it is longer than this part of a nominal one.
@@ -42,9 +42,9 @@ pub(crate) enum Turn {
 #[derive(Component, Clone, Copy, Debug)]
 pub(crate) struct Reeling {
     /// When what was asked for is done, s.
-    done_s: f64,
+    pub(super) done_s: f64,
     /// When the next turn comes, s, and what it is.
-    next: (f64, Turn),
+    pub(super) next: (f64, Turn),
 }
 
 /// The lines whose next turn has come.
@@ -91,7 +91,7 @@ pub(super) fn start(
         next: (done_s, Turn::Done),
     });
     log(world, "reel start", entity, None);
-    plan(world, line);
+    plan(world, line, f64::INFINITY);
 }
 
 /// Gives the points at winches, and what carries them, the masses that they have at the lengths of now.
@@ -103,6 +103,11 @@ pub(super) fn weigh(world: &mut World) {
 
 /// Takes the turn that has come at a line.
 pub(super) fn turn(world: &mut World, line: Entity, turn: Turn) {
+    let is_stop = matches!(turn, Turn::Empty | Turn::Shortest);
+    if is_stop && driving::is_driven(world, line) {
+        driving::stop(world, line);
+        return;
+    }
     match turn {
         Turn::Divide => dividing::divide(world, line),
         Turn::Join => dividing::join(world, line),
@@ -114,7 +119,8 @@ pub(super) fn turn(world: &mut World, line: Entity, turn: Turn) {
         ),
         Turn::Shortest => end(world, line, Some("has been reeled in as far as it can be")),
     }
-    plan(world, line);
+    let until_s = driving::planned_until_s(world, line);
+    plan(world, line, until_s);
 }
 
 /// The segment at the winch has been cut: what is left of the line stays as it is.
@@ -147,7 +153,7 @@ fn end(world: &mut World, line: Entity, warning: Option<&str>) {
     }
 }
 
-fn warn(world: &mut World, tether: Entity, what: &str) {
+pub(super) fn warn(world: &mut World, tether: Entity, what: &str) {
     let time_s = world.resource::<Clock>().time_s;
     let name = world
         .get::<EntityName>(tether)
@@ -156,7 +162,7 @@ fn warn(world: &mut World, tether: Entity, what: &str) {
     warnings.0.push(format!("`{name}` {what} at {time_s} s"));
 }
 
-fn set_rate(world: &mut World, line: Entity, rate_m_s: f64) {
+pub(super) fn set_rate(world: &mut World, line: Entity, rate_m_s: f64) {
     let Some(mut reeled_line) = world.get_mut::<ReeledLine>(line) else {
         return;
     };
@@ -167,8 +173,9 @@ fn set_rate(world: &mut World, line: Entity, rate_m_s: f64) {
     }
 }
 
-/// Finds the next turn of a line, and keeps steps from crossing it.
-fn plan(world: &mut World, line: Entity) {
+/// Finds the next turn of a line, and keeps steps from crossing it if it comes until `until_s`, when it is planned
+/// anew.
+pub(super) fn plan(world: &mut World, line: Entity, until_s: f64) {
     let time_s = world.resource::<Clock>().time_s;
     let (Some(reeling), Some(reeled), Some(state)) = (
         world.get::<Reeling>(line).copied(),
@@ -201,11 +208,13 @@ fn plan(world: &mut World, line: Entity) {
         consider(length_m - SHORTEST_PART * reeled.nominal_m, turn);
     }
     world.entity_mut(line).insert(Reeling { next, ..reeling });
-    world.resource_mut::<Edges>().add([next.0]);
+    if next.0 <= until_s {
+        world.resource_mut::<Edges>().add([next.0]);
+    }
 }
 
 /// Whether there is a segment beyond the one at the winch that is not cut.
-fn has_next(world: &World, line: &ReeledLine) -> bool {
+pub(super) fn has_next(world: &World, line: &ReeledLine) -> bool {
     let Some(parts) = world.get::<TetherParts>(line.tether) else {
         return false;
     };

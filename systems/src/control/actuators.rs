@@ -4,6 +4,7 @@
 use aerobot_components::actuator::{Actuator, ActuatorValue, Command};
 use aerobot_components::state::FirstOrderState;
 use bevy_ecs::component::Component;
+use bevy_ecs::query::Has;
 use bevy_ecs::system::Query;
 use bevy_ecs::world::Mut;
 
@@ -12,6 +13,10 @@ use bevy_ecs::world::Mut;
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
 pub struct AppliedCommand(pub f64);
 
+/// Marks an actuator that is held at zero, whatever its command: a drum without line.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EndStop;
+
 /// Lets actuators follow their commands.
 pub fn follow_commands(
     mut actuators: Query<(
@@ -19,9 +24,14 @@ pub fn follow_commands(
         &Command,
         &mut ActuatorValue,
         Option<&mut FirstOrderState>,
+        Has<EndStop>,
     )>,
 ) {
-    for (actuator, command, mut value, state) in &mut actuators {
+    for (actuator, command, mut value, state, is_stopped) in &mut actuators {
+        if is_stopped {
+            value.0 = 0.0;
+            continue;
+        }
         let command = actuator.limits.cut(command.0);
         let Some(mut state) = state else {
             value.0 = command;
