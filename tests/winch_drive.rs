@@ -21,8 +21,8 @@ fn hanging(commanded: &str, run: &str) -> String {
         "probe": (Body: (mass_kg: 10)),
         "line": (
             Tether: (
-                from: ("anchor", Centre), to: ("probe", Centre), length_m: 50, nodes: 0, axial_stiffness_n: 1e5,
-                damping_n_s_m: 20,
+                from: ("anchor", Centre), to: ("probe", Centre), length_m: 50, nodes: 0, axial_stiffness_n: 1e7,
+                damping_n_s_m: 2000,
             ),
             Winch: (stored_m: 60, drive: (limit: 2)),
         ),
@@ -39,12 +39,12 @@ const LOOP: &str = r#"Controller: (
 )"#;
 
 /// Below a held rate the error of altitude falls by 1 - K T from sample to sample: e_k = e_0 (1 - K T)^k, here 4 m
-/// and 0.8. A rigid line follows to round-off, an elastic one but for its stretch.
+/// and 0.8. A rigid line follows to round-off, a stiff one but for its stretch and what each new rate makes it ring.
 #[test]
 fn an_altitude_is_held_by_its_winch() {
     let run = "duration_s: 20, output_every_s: 0.5, integrator: Auto(accuracy_m: 1e-6)";
     let text = hanging(LOOP, run);
-    for (formulation, tolerance_m) in [("Denoc", 1e-9), ("LumpedMass", 0.02)] {
+    for (formulation, tolerance_m) in [("Denoc", 1e-9), ("LumpedMass", 5e-3)] {
         let results = fly(&text, &[&format!("run.formulation={formulation}")]);
         for sample in 0..=40 {
             let time_s = 0.5 * f64::from(sample);

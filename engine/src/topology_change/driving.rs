@@ -63,12 +63,11 @@ pub(crate) fn due(world: &mut World) -> Vec<Change> {
         if allowed_m_s != reeled.rate_m_s || turns_on {
             changes.push(Change::Drive(line, allowed_m_s));
         }
-        let is_stopped = allowed_m_s != commanded_m_s;
-        let mut actuator = world.entity_mut(drive.actuator);
-        if is_stopped {
-            actuator.insert(EndStop);
+        if allowed_m_s == commanded_m_s {
+            world.entity_mut(drive.actuator).remove::<EndStop>();
         } else {
-            actuator.remove::<EndStop>();
+            world.entity_mut(drive.actuator).insert(EndStop);
+            tell(world, line, reeled.tether);
         }
     }
     changes
@@ -137,15 +136,14 @@ pub(super) fn planned_until_s(world: &World, line: Entity) -> f64 {
 /// Stops a drum at an end of its line.
 pub(super) fn stop(world: &mut World, line: Entity) {
     turn(world, line, 0.0);
-    let Some(tether) = world.get::<ReeledLine>(line).map(|line| line.tether) else {
-        return;
-    };
-    let first = world.get_mut::<Drive>(line).is_some_and(|mut drive| {
-        let told = drive.told;
-        drive.told = true;
-        !told
-    });
-    if first {
+}
+
+/// Tells once that a drum was commanded beyond an end of its line.
+fn tell(world: &mut World, line: Entity, tether: Entity) {
+    let is_first = world
+        .get_mut::<Drive>(line)
+        .is_some_and(|mut drive| !std::mem::replace(&mut drive.told, true));
+    if is_first {
         log(world, "reel end", tether, None);
         warn(world, tether, "was commanded beyond an end of its line");
     }
