@@ -10,6 +10,7 @@ mod coordinates;
 pub mod design_search;
 pub mod evaluation;
 mod event_location;
+pub mod geometry;
 mod integrator_choice;
 mod linearisation;
 mod link_stable_step;

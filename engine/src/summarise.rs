@@ -30,10 +30,10 @@ impl Simulation {
             });
         let has_segments = self.stable_step.step_s.is_finite();
         Summary {
-            version: VERSION,
+            version: VERSION.into(),
             scene: self.scene.name.clone(),
             seed: self.scene.seed,
-            formulation: self.scene.formulation,
+            formulation: self.scene.formulation.into(),
             integrator: self.scene.integrator.clone(),
             stable_step_s: has_segments.then_some(self.stable_step.step_s),
             stiffest_segment: has_segments.then(|| self.stable_step.segment.clone()),
@@ -42,7 +42,7 @@ impl Simulation {
             rejected_steps: cost.rejected,
             evaluations: cost.evaluations,
             simulated_s: stopped.as_ref().map_or(self.time_s(), |stop| stop.time_s),
-            outcome: if stopped.is_some() { "stopped" } else { "done" },
+            outcome: if stopped.is_some() { "stopped" } else { "done" }.into(),
             stopped,
             largest_tension,
             events: events.events().iter().map(EventRow::from).collect(),

@@ -1,9 +1,10 @@
 //! `summary.json`: what was run and how it ended. `timing.json`: what it took, apart, because every
 //! other file has the same bytes for the same scene, seed and version.
 
+use std::borrow::Cow;
 use std::fmt;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::world::Event;
 
@@ -11,16 +12,16 @@ use crate::world::Event;
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// The summary of a run.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Summary {
     /// Version of the program.
-    pub version: &'static str,
+    pub version: Cow<'static, str>,
     /// Name of the scene.
     pub scene: String,
     /// Seed of the random draws.
     pub seed: u64,
     /// The formulation.
-    pub formulation: &'static str,
+    pub formulation: Cow<'static, str>,
     /// The integrator with its settings.
     pub integrator: String,
     /// Largest step that fixed-step RK4 could take at the start, s; absent without tethers.
@@ -38,7 +39,7 @@ pub struct Summary {
     /// Simulated time, s.
     pub simulated_s: f64,
     /// `done` or `stopped`.
-    pub outcome: &'static str,
+    pub outcome: Cow<'static, str>,
     /// Why it stopped before its end.
     pub stopped: Option<Stop>,
     /// The largest tension and where it was.
@@ -56,7 +57,7 @@ pub struct Summary {
 impl Summary {
     /// Marks the run as stopped at its present end, for `reason`.
     pub fn stop(&mut self, reason: String) {
-        self.outcome = "stopped";
+        self.outcome = "stopped".into();
         self.stopped = Some(Stop {
             time_s: self.simulated_s,
             entity: None,
@@ -66,7 +67,7 @@ impl Summary {
 }
 
 /// Why a run stopped before its end.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
     /// Time of the last accepted state, s.
     pub time_s: f64,
@@ -87,7 +88,7 @@ impl fmt::Display for Stop {
 }
 
 /// The largest tension of a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LargestTension {
     /// The tension, N.
     pub tension_n: f64,
@@ -100,7 +101,7 @@ pub struct LargestTension {
 }
 
 /// An event.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EventRow {
     /// When, s.
     pub time_s: f64,
@@ -121,7 +122,7 @@ impl From<&Event> for EventRow {
 }
 
 /// State of a body at the end of a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FinalState {
     /// Its name.
     pub entity: String,
@@ -136,7 +137,7 @@ pub struct FinalState {
 }
 
 /// What a run took.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Timing {
     /// Wall time, s.
     pub wall_s: f64,
