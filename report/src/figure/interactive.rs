@@ -7,67 +7,111 @@ use serde_json::{Map, Value, json};
 use super::tone::Tone;
 use super::{Axis, Figure, Mark, Panel, Scale, Series};
 
-/// Height of a panel and of what is above and below panels, pixels.
+/// Height of a panel, of one with equal axes, and of what is above and below all panels, pixels.
 const PANEL_HEIGHT: f64 = 230.0;
 const SQUARE_HEIGHT: f64 = 520.0;
 const MARGINS: f64 = 70.0;
-/// Part of the height between panels.
-const GAP_PIXELS: f64 = 42.0;
+/// Height between panels, and what the name of an axis and a title add to it, pixels.
+const GAP: f64 = 26.0;
+const AXIS_NAME: f64 = 24.0;
+const PANEL_TITLE: f64 = 14.0;
 
 impl Figure {
     /// The figure for plotly.js: `{"data": .., "layout": .., "time_axes": [..]}`.
     #[must_use]
     pub fn interactive(&self) -> Value {
-        let mut layout = Map::new();
-        let mut data = Vec::new();
-        let mut annotations = Vec::new();
-        let heights: Vec<f64> = self.panels.iter().map(height).collect();
-        let gaps = GAP_PIXELS * (heights.len().max(1) - 1) as f64;
-        let inner = heights.iter().sum::<f64>() + gaps;
-        let mut top = 1.0;
-        let mut named: Vec<&str> = Vec::new();
-        let mut time_axes = Vec::new();
+        let gaps = self.panels.windows(2).map(|pair| gap(&pair[0], &pair[1]));
+        let inner = self.panels.iter().map(height).sum::<f64>() + gaps.sum::<f64>();
+        let mut drawing = Drawing::default();
+        let mut top = inner;
         for (index, panel) in self.panels.iter().enumerate() {
-            let bottom = top - heights[index] / inner;
-            let suffix = if index == 0 {
-                String::new()
-            } else {
-                (index + 1).to_string()
-            };
-            for series in &panel.series {
-                let is_new = !series.name.is_empty() && !named.contains(&series.name.as_str());
-                if is_new {
-                    named.push(&series.name);
-                }
-                data.extend(traces(series, &suffix, is_new));
-            }
-            let mut x = axis(&panel.x);
-            x.insert("anchor".into(), json!(format!("y{suffix}")));
-            if panel.x.is_time {
-                time_axes.push(format!("xaxis{suffix}"));
-                if index > 0 {
-                    x.insert("matches".into(), json!("x"));
-                }
-            }
-            let mut y = axis(&panel.y);
-            y.insert("domain".into(), json!([bottom.max(0.0), top]));
-            y.insert("anchor".into(), json!(format!("x{suffix}")));
-            if panel.equal_axes {
-                y.insert("scaleanchor".into(), json!(format!("x{suffix}")));
-                x.insert("constrain".into(), json!("domain"));
-            }
-            layout.insert(format!("xaxis{suffix}"), Value::Object(x));
-            layout.insert(format!("yaxis{suffix}"), Value::Object(y));
-            annotations.extend(labels(panel, &suffix));
-            annotations.extend(title(panel, top));
-            top = bottom - GAP_PIXELS / inner;
+            let next = self.panels.get(index + 1);
+            let bottom = top - height(panel);
+            drawing.add(panel, next, [bottom.max(0.0) / inner, top / inner]);
+            top = bottom - next.map_or(0.0, |next| gap(panel, next));
         }
-        layout.insert("annotations".into(), Value::Array(annotations));
-        layout.insert("height".into(), json!(inner + MARGINS));
+        drawing.finish(inner + MARGINS)
+    }
+}
+
+/// Whether the axis of the next panel says what this one shows.
+fn is_named_below(panel: &Panel, next: &Panel) -> bool {
+    panel.x.is_time && next.x.is_time
+}
+
+fn gap(panel: &Panel, next: &Panel) -> f64 {
+    let name = if is_named_below(panel, next) {
+        0.0
+    } else {
+        AXIS_NAME
+    };
+    let title = if next.title.is_empty() {
+        0.0
+    } else {
+        PANEL_TITLE
+    };
+    GAP + name + title
+}
+
+/// A figure while its panels are added.
+#[derive(Default)]
+struct Drawing<'a> {
+    data: Vec<Value>,
+    layout: Map<String, Value>,
+    annotations: Vec<Value>,
+    named: Vec<&'a str>,
+    time_axes: Vec<String>,
+    panels: usize,
+}
+
+impl<'a> Drawing<'a> {
+    fn add(&mut self, panel: &'a Panel, next: Option<&Panel>, domain: [f64; 2]) {
+        self.panels += 1;
+        let suffix = match self.panels {
+            1 => String::new(),
+            number => number.to_string(),
+        };
+        for series in &panel.series {
+            let is_new = !series.name.is_empty() && !self.named.contains(&series.name.as_str());
+            if is_new {
+                self.named.push(&series.name);
+            }
+            self.data.extend(traces(series, &suffix, is_new));
+        }
+        let mut x = axis(&panel.x);
+        x.insert("anchor".into(), json!(format!("y{suffix}")));
+        if panel.x.is_time {
+            if let Some(first) = self.time_axes.first() {
+                x.insert("matches".into(), json!(first.replace("axis", "")));
+            }
+            self.time_axes.push(format!("xaxis{suffix}"));
+        }
+        if next.is_some_and(|next| is_named_below(panel, next)) {
+            x.remove("title");
+        }
+        let mut y = axis(&panel.y);
+        y.insert("domain".into(), json!(domain));
+        y.insert("anchor".into(), json!(format!("x{suffix}")));
+        if panel.equal_axes {
+            y.insert("scaleanchor".into(), json!(format!("x{suffix}")));
+            x.insert("constrain".into(), json!("domain"));
+        }
+        self.layout
+            .insert(format!("xaxis{suffix}"), Value::Object(x));
+        self.layout
+            .insert(format!("yaxis{suffix}"), Value::Object(y));
+        self.annotations.extend(labels(panel, &suffix));
+        self.annotations.extend(title(panel, domain[1]));
+    }
+
+    fn finish(self, height: f64) -> Value {
+        let mut layout = self.layout;
+        layout.insert("annotations".into(), Value::Array(self.annotations));
+        layout.insert("height".into(), json!(height));
         layout.insert("margin".into(), json!({"l": 78, "r": 20, "t": 24, "b": 46}));
         layout.insert("hovermode".into(), json!("closest"));
-        layout.insert("showlegend".into(), json!(!named.is_empty()));
-        json!({"data": data, "layout": layout, "time_axes": time_axes})
+        layout.insert("showlegend".into(), json!(!self.named.is_empty()));
+        json!({"data": self.data, "layout": layout, "time_axes": self.time_axes})
     }
 }
 
@@ -85,9 +129,15 @@ fn height(panel: &Panel) -> f64 {
 fn axis(axis: &Axis) -> Map<String, Value> {
     let mut out = Map::new();
     out.insert("title".into(), json!({"text": axis.label, "standoff": 8}));
-    if axis.scale == Scale::Log {
-        out.insert("type".into(), json!("log"));
-        out.insert("exponentformat".into(), json!("power"));
+    match axis.scale {
+        Scale::Log => {
+            out.insert("type".into(), json!("log"));
+            out.insert("exponentformat".into(), json!("power"));
+        }
+        // Metres, not kilometres by a `k` behind the number.
+        Scale::Linear => {
+            out.insert("exponentformat".into(), json!("none"));
+        }
     }
     if let Some((low, high)) = axis.range {
         let ends = match axis.scale {

@@ -79,11 +79,12 @@ pub fn is_page(bytes: &[u8]) -> bool {
     String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]).contains(GENERATOR)
 }
 
-/// The script element of plotly.js that the crate carries; it is the last of those that it offers.
+/// The script element of plotly.js that the crate carries: the first of those that it offers.
 fn plotly_script() -> String {
+    const END: &str = "</script>";
     let all = Plot::offline_js_sources();
-    let start = all.rfind("<script").unwrap_or_default();
-    all[start..].to_owned()
+    let end = all.find(END).map_or(all.len(), |end| end + END.len());
+    all[..end].to_owned() + "\n"
 }
 
 fn write_block(out: &mut String, block: &Block, id: &str) {

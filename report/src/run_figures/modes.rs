@@ -1,14 +1,11 @@
 //! Modes of small motions about the steady state of the run's scene.
 
-use aerobot_engine::modes::ModesRequest;
+use aerobot_engine::modes::{Mode, ModesRequest};
 use aerobot_engine::plugin::Simulator;
 
 use super::nothing;
-use crate::figure::{Axis, Figure, Label, Mark, Panel, Series};
+use crate::figure::{Axis, Figure, Mark, Panel, Series};
 use crate::record::Record;
-
-/// Modes that are named.
-const NAMED: usize = 8;
 
 /// Frequency and damping ratio of every mode that oscillates.
 pub(super) fn modes(simulator: &Simulator, record: &Record) -> Result<Figure, String> {
@@ -29,35 +26,41 @@ pub(super) fn modes(simulator: &Simulator, record: &Record) -> Result<Figure, St
     if oscillating.is_empty() {
         return nothing("no mode oscillates");
     }
-    let place = |mode: &aerobot_engine::modes::Mode| (mode.frequency_hz(), mode.damping_ratio());
-    let (stable, unstable): (Vec<_>, Vec<_>) = oscillating
-        .iter()
-        .copied()
-        .partition(|mode| !mode.is_unstable());
-    let series = [("decays", stable), ("grows", unstable)]
-        .into_iter()
-        .enumerate();
-    let series = series.map(|(tone, (name, modes))| {
-        let points = modes.iter().map(|mode| place(mode));
-        Series::line(name, points)
-            .with_mark(Mark::Points)
-            .with_tone(tone)
-    });
-    let labels = oscillating.iter().take(NAMED).map(|mode| Label {
-        x: place(mode).0,
-        y: place(mode).1,
-        text: mode.name.clone(),
-    });
+    // The slowest at the top.
+    let count = oscillating.len();
+    let row = |index: usize| (count - 1 - index) as f64;
+    let names = Axis {
+        names: oscillating
+            .iter()
+            .rev()
+            .map(|mode| mode.name.clone())
+            .collect(),
+        ..Axis::new("")
+    };
+    let panel = |x: Axis, value: &dyn Fn(&Mode) -> f64| {
+        let series = [("decays", false), ("grows", true)].into_iter().enumerate();
+        let series = series.map(|(tone, (name, grows))| {
+            let chosen = oscillating.iter().enumerate();
+            let chosen = chosen.filter(|(_, mode)| mode.is_unstable() == grows);
+            let points = chosen.map(|(index, mode)| (value(mode), row(index)));
+            Series::line(name, points)
+                .with_mark(Mark::Points)
+                .with_tone(tone)
+        });
+        Panel {
+            x,
+            y: names.clone(),
+            series: series.filter(|series| !series.x.is_empty()).collect(),
+            ..Panel::default()
+        }
+    };
     Ok(Figure {
         title: "Modes of small motions".to_owned(),
-        caption: "About the steady state; the slowest are named.".to_owned(),
-        panels: vec![Panel {
-            x: Axis::log("frequency [Hz]"),
-            y: Axis::new("damping ratio [1]"),
-            series: series.filter(|series| !series.x.is_empty()).collect(),
-            labels: labels.collect(),
-            ..Panel::default()
-        }],
+        caption: "About the steady state, the slowest first.".to_owned(),
+        panels: vec![
+            panel(Axis::log("frequency [Hz]"), &Mode::frequency_hz),
+            panel(Axis::new("damping ratio [1]"), &Mode::damping_ratio),
+        ],
         ..Figure::default()
     })
 }

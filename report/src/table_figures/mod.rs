@@ -120,7 +120,7 @@ fn perf_scaling(table: &Table) -> Result<Figure, String> {
         title: "Cost over size".to_owned(),
         panels: vec![
             panel("elements", "elements", "elements of the tether [1]")?,
-            panel("length", "length_m", "length of the tether [m]")?,
+            panel("length_m", "length_m", "length of the tether [m]")?,
         ],
         ..Figure::default()
     })

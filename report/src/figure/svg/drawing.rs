@@ -8,7 +8,7 @@ use plotters::prelude::{
 use plotters::style::{BLACK, Color as _, RGBColor};
 
 use super::coordinates::{Coordinates, tick_text};
-use super::{Area, BELOW, LEFT, MARGIN, Outcome};
+use super::{Area, BELOW, MARGIN, Outcome, left};
 use crate::figure::tone::Tone;
 use crate::figure::{Axis, Mark, Panel, Scale, Series};
 
@@ -18,7 +18,7 @@ pub(super) fn draw(area: &Area<'_>, panel: &Panel, coordinates: &Coordinates) ->
     let (width, height) = area.dim_in_pixel();
     let title_height = if panel.title.is_empty() { 0 } else { 20 };
     let pixels = (
-        f64::from(width.saturating_sub(LEFT + 2 * MARGIN).max(1)),
+        f64::from(width.saturating_sub(left(panel) + 2 * MARGIN).max(1)),
         f64::from(
             height
                 .saturating_sub(BELOW + 2 * MARGIN + title_height)
@@ -36,7 +36,7 @@ pub(super) fn draw(area: &Area<'_>, panel: &Panel, coordinates: &Coordinates) ->
     builder
         .margin(MARGIN)
         .x_label_area_size(BELOW)
-        .y_label_area_size(LEFT);
+        .y_label_area_size(left(panel));
     if !panel.title.is_empty() {
         builder.caption(&panel.title, ("sans-serif", 15.0));
     }

@@ -22,8 +22,9 @@ const HEIGHT: u32 = 250;
 const TITLE: u32 = 34;
 /// Height for each name of an axis of names.
 const NAME: u32 = 24;
-/// Room for the numbers of the axes, pixels.
+/// Room for the numbers of the axes, pixels; for names as many more as the longest has letters.
 const LEFT: u32 = 84;
+const LETTER: u32 = 7;
 const BELOW: u32 = 52;
 const MARGIN: u32 = 14;
 /// Height of panels whose axes are equally long, pixels, between which it follows the data.
@@ -85,9 +86,16 @@ fn centred(font: (&str, u32)) -> TextStyle<'_> {
     style.pos(Pos::new(HPos::Center, VPos::Center))
 }
 
+/// Room on the left of a panel, pixels.
+fn left(panel: &Panel) -> u32 {
+    let letters = panel.y.names.iter().map(|name| name.chars().count() as u32);
+    let names = letters.max().map_or(0, |letters| letters * LETTER + 24);
+    LEFT.max(names.min(WIDTH / 2))
+}
+
 fn height(panel: &Panel, coordinates: &Coordinates) -> u32 {
     if panel.equal_axes {
-        let inner = f64::from(WIDTH - LEFT - 2 * MARGIN);
+        let inner = f64::from(WIDTH - left(panel) - 2 * MARGIN);
         let (width, height) = coordinates.spans();
         let wanted = inner * height / width;
         return wanted.clamp(SQUARE.0, SQUARE.1) as u32 + BELOW + 2 * MARGIN;
