@@ -28,7 +28,7 @@ pub(super) struct ExportArguments {
     /// Collection for ParaView, `.pvd`, with its frames in the folder of the same name; or a folder for both.
     #[arg(long, value_name = "FILE_OR_FOLDER")]
     vtk: Option<PathBuf>,
-    /// Most frames.
+    /// Most frames, besides those nearest to events and to the largest tension.
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(2..=99_999))]
     frames: u32,
     /// Overwrite what exists.
