@@ -8,6 +8,7 @@ mod campaign_submit;
 mod check;
 mod compare;
 mod comparison_text;
+mod export;
 mod finding;
 mod modes;
 mod optimise;
@@ -64,6 +65,8 @@ enum Command {
     Campaign(campaign::CampaignCommand),
     /// Find the best values of fields of a scene within bounds and constraints.
     Optimise(optimise::OptimiseArguments),
+    /// Write how a run moved for other programs: glTF, VTK.
+    Export(export::ExportArguments),
 }
 
 /// What every command that reads a scene takes.
@@ -311,5 +314,6 @@ pub fn main(plugins: &[&dyn Plugin]) -> ExitCode {
         Command::Wind(arguments) => wind::wind(&simulator, &arguments),
         Command::Campaign(command) => campaign::campaign(&simulator, &command),
         Command::Optimise(arguments) => optimise::optimise(&simulator, &arguments),
+        Command::Export(arguments) => export::export(&simulator, &arguments),
     }
 }

@@ -37,7 +37,11 @@ pub fn read_comma_separated(text: &str) -> Result<CommaSeparated, String> {
     Ok(CommaSeparated { header, rows })
 }
 
-fn fields(number: usize, line: &str) -> Result<Vec<String>, String> {
+/// The fields of a line, whose number stands in the message.
+///
+/// # Errors
+/// Quotes that are not closed, with line and column.
+pub fn fields(number: usize, line: &str) -> Result<Vec<String>, String> {
     let (mut found, mut field) = (Vec::new(), String::new());
     let mut characters = line.chars().enumerate().peekable();
     let mut opened = None;

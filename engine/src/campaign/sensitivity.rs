@@ -1,9 +1,10 @@
 //! Which part of a metric's variance each field makes: Sobol indices of the runs of a campaign, by what its plan
 //! allows.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::definition::Campaign;
 use super::finished_runs::FinishedRuns;
@@ -12,7 +13,7 @@ use super::saltelli::Saltelli;
 use super::sobol_indices::{Estimate, FEWEST_RUNS, ranked_index, saltelli_indices};
 
 /// Which part of the variance of a metric a field makes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct SobolIndex {
     /// Path of the field; `run.seed` stands for chance.
     pub field: String,
@@ -23,7 +24,7 @@ pub struct SobolIndex {
     /// With everything that it does together with others; a Saltelli plan alone tells it.
     pub total: Option<Estimate>,
     /// How it was estimated.
-    pub estimator: &'static str,
+    pub estimator: Cow<'static, str>,
     /// Base samples of a Saltelli plan, else runs, that have the metric.
     pub samples: u64,
     /// Base samples, or runs, that do not, and are left out.
@@ -68,7 +69,7 @@ fn of_base_samples(campaign: &Campaign, layout: Saltelli, runs: &FinishedRuns) -
                 metric: name.clone(),
                 first_order: pair.map(|pair| pair.0),
                 total: pair.map(|pair| pair.1),
-                estimator: SALTELLI,
+                estimator: SALTELLI.into(),
                 samples,
                 left_out: base_samples - samples,
             });
@@ -93,7 +94,7 @@ fn of_given_runs(campaign: &Campaign, runs: &FinishedRuns) -> Vec<SobolIndex> {
                 metric: name.clone(),
                 first_order: ranked_index(&pairs, campaign.specification.seed, stream),
                 total: None,
-                estimator: RANKS,
+                estimator: RANKS.into(),
                 samples: pairs.len() as u64,
                 left_out: runs.count() - pairs.len() as u64,
             });

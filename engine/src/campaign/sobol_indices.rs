@@ -9,13 +9,13 @@
 //! next larger value of the field, the largest followed by the smallest (Gamboa, Gremaud, Klein and Lagnoux,
 //! Bernoulli 28, 2345 (2022)).
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::random_stream::{Purpose, RandomStream};
 use super::statistics::percentile;
 
 /// A part of a variance. Estimates may be somewhat below 0 or above 1.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Estimate {
     /// The estimate.
     pub value: f64,

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::definition::Campaign;
 use super::finished_runs::FinishedRuns;
@@ -14,7 +14,7 @@ use super::statistics::{bootstrap, mean_and_deviation, percentile, rank_correlat
 pub const PERCENTS: [f64; 7] = [1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 99.0];
 
 /// The summary of a campaign.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct CampaignSummary {
     /// Version of the program.
     pub version: String,
@@ -43,7 +43,7 @@ pub struct CampaignSummary {
 }
 
 /// Runs that failed for one reason.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Failure {
     /// The reason, with `#` for numbers.
     pub reason: String,
@@ -61,7 +61,7 @@ pub struct Failure {
 const FOLDER: &str = "DIR";
 
 /// A metric over all runs that have it, in its unit.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct MetricSummary {
     /// Its name.
     pub name: String,
@@ -86,7 +86,7 @@ pub struct MetricSummary {
 }
 
 /// A percentile, in the metric's unit.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Percentile {
     /// Which, %.
     pub percent: f64,
@@ -97,7 +97,7 @@ pub struct Percentile {
 }
 
 /// Spearman's rank correlation of a field and a metric.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct RankCorrelation {
     /// Path of the field.
     pub field: String,

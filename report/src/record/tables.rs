@@ -93,6 +93,17 @@ impl StateTrack {
         Some(self.positions_m[index].lerp(*next, part))
     }
 
+    /// Velocity (m/s) at a time (s), linear between records; nothing outside of them.
+    #[must_use]
+    pub fn velocity_at_m_s(&self, time_s: f64) -> Option<DVec3> {
+        let (index, part) = place(&self.times_s, time_s)?;
+        let next = self
+            .velocities_m_s
+            .get(index + 1)
+            .unwrap_or(&self.velocities_m_s[index]);
+        Some(self.velocities_m_s[index].lerp(*next, part))
+    }
+
     /// Attitude at a time (s), turning evenly between records; nothing outside of them or of a node.
     #[must_use]
     pub fn attitude_at(&self, time_s: f64) -> Option<DQuat> {
