@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use aerobot_engine::plugin::Simulator;
 use aerobot_engine::scene::source::nearest;
 use aerobot_engine::trim::scene_file::check_target;
+use aerobot_report::campaign::{CampaignFigure, CampaignRecord};
 use aerobot_report::figure::Figure;
 use aerobot_report::figure::thinning::MOST_POINTS;
 use aerobot_report::record::Record;
@@ -37,13 +38,15 @@ pub(super) fn plot(simulator: &Simulator, arguments: &PlotArguments) -> ExitCode
 
 /// Names of all kinds and what they show.
 fn kinds() -> Vec<(&'static str, &'static str)> {
+    let campaigns = CampaignFigure::ALL.into_iter();
+    let campaigns = campaigns.map(|kind| (kind.name(), kind.about()));
     let runs = run_figures::KINDS
         .iter()
         .map(|kind| (kind.name, kind.about));
     let tables = table_figures::KINDS
         .iter()
         .map(|kind| (kind.name, kind.about));
-    runs.chain(tables).collect()
+    runs.chain(campaigns).chain(tables).collect()
 }
 
 fn write(simulator: &Simulator, arguments: &PlotArguments) -> Result<PathBuf, String> {
@@ -84,6 +87,10 @@ fn figure(
     };
     if let Some(kind) = table_figures::TableFigureKind::of(kind) {
         return kind.figure(folder).map_err(nothing);
+    }
+    if let Ok(kind) = kind.parse::<CampaignFigure>() {
+        let record = CampaignRecord::read(folder).map_err(|error| error.to_string())?;
+        return record.figure(kind).map_err(nothing);
     }
     let Some(kind) = run_figures::RunFigureKind::of(kind) else {
         let near = nearest(kind, kinds().into_iter().map(|(name, _)| name));

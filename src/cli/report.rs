@@ -4,7 +4,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use aerobot_engine::campaign::manifest::MANIFEST;
+use aerobot_engine::campaign::results::KEPT;
 use aerobot_engine::plugin::Simulator;
+use aerobot_report::campaign::CampaignRecord;
+use aerobot_report::page::campaign_page::campaign_page;
 use aerobot_report::page::run_page::run_page;
 use aerobot_report::page::{Page, is_page};
 use aerobot_report::record::Record;
@@ -13,6 +17,8 @@ use super::{REFUSED, ReportArguments, complain, say};
 
 /// Name of the report in the folder of its run.
 const REPORT_FILE: &str = "report.html";
+/// Runs that a campaign has kept and that get reports of their own, at most.
+const MOST_KEPT: usize = 8;
 /// More runs than this in one report are not told apart.
 const MOST_RUNS: usize = 4;
 
@@ -85,12 +91,44 @@ fn check_target(file: &Path, force: bool) -> Result<(), String> {
 }
 
 fn page(simulator: &Simulator, folders: &[PathBuf]) -> Result<Page, String> {
+    if let Some(campaign) = folders.iter().find(|folder| is_campaign(folder)) {
+        return match folders {
+            [_] => of_campaign(simulator, campaign),
+            _ => Err(format!(
+                "error: `{}` is a campaign, and a report has one\n  = help: name it alone",
+                campaign.display()
+            )),
+        };
+    }
     let records = folders
         .iter()
         .map(|folder| Record::read(simulator, folder))
         .collect::<Result<Vec<_>, _>>()
         .map_err(|error| error.to_string())?;
     Ok(run_page(simulator, &with_distinct_labels(records, folders)))
+}
+
+/// Whether a folder is that of a campaign.
+pub(super) fn is_campaign(folder: &Path) -> bool {
+    folder.join(MANIFEST).is_file()
+}
+
+/// The page of a campaign; runs that it has kept get reports of their own.
+fn of_campaign(simulator: &Simulator, folder: &Path) -> Result<Page, String> {
+    let record = CampaignRecord::read(folder).map_err(|error| error.to_string())?;
+    let mut names: Vec<String> = fs::read_dir(folder.join(KEPT))
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    let mut kept = Vec::new();
+    for name in names.into_iter().take(MOST_KEPT) {
+        write_beside(simulator, &folder.join(KEPT).join(&name))?;
+        kept.push((name.clone(), format!("{KEPT}/{name}/{REPORT_FILE}")));
+    }
+    Ok(campaign_page(&record, &kept))
 }
 
 /// Two folders of one name in different places are told apart by their paths.

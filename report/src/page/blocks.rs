@@ -37,6 +37,13 @@ pub enum Block {
         /// The text.
         text: String,
     },
+    /// A link to a file beside the page.
+    Link {
+        /// What it is.
+        text: String,
+        /// Its place from the page.
+        to: String,
+    },
     /// A command to be copied.
     Command(String),
 }

@@ -119,6 +119,10 @@ fn write_block(out: &mut String, block: &Block, id: &str) {
             text_in_html(summary),
             text_in_html(text)
         ),
+        Block::Link { text, to } => {
+            let (text, to) = (text_in_html(text), text_in_html(to));
+            writeln!(out, "<p><a href=\"{to}\">{text}</a></p>")
+        }
         Block::Command(command) => writeln!(
             out,
             "<pre class=\"command\">{}</pre>",
