@@ -16,7 +16,7 @@ use aerobot_report::record::Record;
 use super::{REFUSED, ReportArguments, complain, say};
 
 /// Name of the report in the folder of its run.
-const REPORT_FILE: &str = "report.html";
+pub(super) const REPORT_FILE: &str = "report.html";
 /// Runs that a campaign has kept and that get reports of their own, at most.
 const MOST_KEPT: usize = 8;
 /// More runs than this in one report are not told apart.

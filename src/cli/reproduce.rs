@@ -10,7 +10,9 @@ use aerobot_engine::run_folder::RunError;
 use aerobot_engine::scene::source::nearest;
 
 use super::progress::PartBar;
+use super::report::{REPORT_FILE, write_page};
 use super::{REFUSED, ReproduceArguments, STOPPED, complain, say};
+use crate::reproduce::page::page;
 use crate::reproduce::{Case, Finished, Report, ReproduceError, Settings, cases, run_cases};
 
 pub(super) fn reproduce(simulator: &Simulator, arguments: &ReproduceArguments) -> ExitCode {
@@ -45,9 +47,16 @@ pub(super) fn reproduce(simulator: &Simulator, arguments: &ReproduceArguments) -
         quiet: arguments.quiet,
         written: false,
         worst: ExitCode::SUCCESS,
+        finished: Vec::new(),
     };
     match run(simulator, &chosen, &settings, &mut told) {
-        Ok(()) => told.worst,
+        Ok(()) => match told.write_page() {
+            Ok(()) => told.worst,
+            Err(message) => {
+                complain(message);
+                ExitCode::from(STOPPED)
+            }
+        },
         Err(Refusal(message)) => {
             complain(message);
             if is_new && !told.written {
@@ -109,7 +118,7 @@ fn run(
         settings,
         threads,
         &|what, part| bar.show(what, part),
-        &mut |finished| bar.above(|| told.take(&finished)),
+        &mut |finished| bar.above(|| told.take(finished)),
     );
     bar.clear();
     result
@@ -122,11 +131,22 @@ struct Told<'a> {
     /// Whether there are tables.
     written: bool,
     worst: ExitCode,
+    finished: Vec<Finished>,
 }
 
 impl Told<'_> {
+    /// Writes the page of all cases beside their tables.
+    fn write_page(&self) -> Result<(), String> {
+        let file = self.folder.join(REPORT_FILE);
+        write_page(&file, &page(&self.finished))?;
+        if !self.quiet {
+            say(format_args!("\nreport in `{}`", file.display()));
+        }
+        Ok(())
+    }
+
     /// Prints the text of a case and writes its tables; what stopped and what does not hold is complained of.
-    fn take(&mut self, finished: &Finished) -> Result<(), Refusal> {
+    fn take(&mut self, finished: Finished) -> Result<(), Refusal> {
         let (name, report) = (finished.name, &finished.report);
         report
             .write(self.folder)
@@ -152,6 +172,7 @@ impl Told<'_> {
         if !report.stopped.is_empty() || failed.count() > 0 {
             self.worst = ExitCode::from(STOPPED);
         }
+        self.finished.push(finished);
         Ok(())
     }
 }

@@ -9,8 +9,10 @@ pub mod chase;
 pub mod check;
 pub mod comparison;
 pub mod docking;
+mod drawing;
 pub mod flight;
 pub mod mojave;
+pub mod page;
 pub mod pendulums;
 pub mod performance;
 mod running;
@@ -23,6 +25,7 @@ use std::{fs, io};
 
 use aerobot_engine::plugin::Simulator;
 use aerobot_engine::scene::SceneError;
+use aerobot_report::figure::Figure;
 use aerobot_systems::towed_cable::TowedCableError;
 use thiserror::Error;
 
@@ -91,6 +94,8 @@ pub struct Report {
     pub verdict: Verdict,
     /// The tables for other programs.
     pub tables: Vec<Table>,
+    /// Figures like those of the paper, and of what it does not show.
+    pub figures: Vec<Figure>,
     /// Runs that stopped before their end, and why.
     pub stopped: Vec<String>,
 }
@@ -105,6 +110,12 @@ pub struct Table {
 }
 
 impl Report {
+    /// The same with figures.
+    #[must_use]
+    fn with_figures(self, figures: Vec<Figure>) -> Self {
+        Self { figures, ..self }
+    }
+
     /// Writes the tables into a folder that exists.
     ///
     /// # Errors

@@ -2,6 +2,7 @@
 //! 10): both scenes in both formulations, and how the formulations meet as tethers get stiffer.
 
 mod checks;
+mod figures;
 mod report;
 
 use aerobot_components::run::Formulation;
@@ -42,7 +43,8 @@ impl Case for Chains {
         settings: &Settings,
         progress: &mut dyn FnMut(&str, f64),
     ) -> Result<Report, ReproduceError> {
-        Ok(report::report(&study(simulator, settings, progress)?))
+        let results = study(simulator, settings, progress)?;
+        Ok(report::report(&results).with_figures(figures::figures(&results)))
     }
 }
 

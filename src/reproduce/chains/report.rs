@@ -37,6 +37,7 @@ pub(super) fn report(results: &[ChainResult]) -> Report {
         })
     });
     Report {
+        figures: Vec::new(),
         title: TITLE.to_owned(),
         paper_shows: PAPER_SHOWS.to_owned(),
         text,

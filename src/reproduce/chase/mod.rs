@@ -2,6 +2,7 @@
 //! and in the two in which it cannot be had.
 
 mod checks;
+mod figures;
 mod report;
 
 use std::path::Path;
@@ -47,7 +48,7 @@ impl Case for Chase {
         progress: &mut dyn FnMut(&str, f64),
     ) -> Result<Report, ReproduceError> {
         let flights = fly(simulator, settings, progress)?;
-        Ok(report::report(&flights))
+        Ok(report::report(&flights).with_figures(figures::figures(&flights)))
     }
 }
 

@@ -32,6 +32,7 @@ pub(super) fn report(flights: &[ChaseFlight]) -> Report {
     });
     let checks = checks::checks(flights);
     Report {
+        figures: Vec::new(),
         title: TITLE.to_owned(),
         paper_shows: PAPER_SHOWS.to_owned(),
         text: text(flights),

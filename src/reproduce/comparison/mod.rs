@@ -1,6 +1,7 @@
 //! The comparison of the two formulations (paper, sec. 4.2, figures 5 and 6): one flight in lumped masses and in
 //! rigid links, the difference as the tether gets stiffer, and both against separate programs.
 
+mod figures;
 mod reference;
 mod report;
 
@@ -46,7 +47,8 @@ impl Case for FormulationComparison {
         settings: &Settings,
         progress: &mut dyn FnMut(&str, f64),
     ) -> Result<Report, ReproduceError> {
-        Ok(report::report(&study(simulator, settings, progress)?))
+        let found = study(simulator, settings, progress)?;
+        Ok(report::report(&found).with_figures(figures::figures(&found)))
     }
 }
 

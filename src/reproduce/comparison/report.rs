@@ -46,6 +46,7 @@ pub(super) fn report(found: &ComparisonStudy) -> Report {
     .concat();
     let limit_flights = found.references.iter().map(|(_, flight)| flight);
     Report {
+        figures: Vec::new(),
         title: TITLE.to_owned(),
         paper_shows: PAPER_SHOWS.to_owned(),
         text,

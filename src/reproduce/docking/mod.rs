@@ -1,6 +1,7 @@
 //! Docking of a drone with the gondola, which the paper promises (contribution 4) and leaves out (sec. 5.4): a
 //! rotorcraft in one wind field with the gondola, some seeds of gusts and of errors of navigation.
 
+mod figures;
 mod impact;
 mod report;
 
@@ -52,7 +53,7 @@ impl Case for DockingCase {
         own.nodes = settings.nodes.or(own.nodes);
         own.duration_s = settings.duration_s.unwrap_or(own.duration_s);
         let found = study(simulator, &own, progress)?;
-        Ok(report::report(&found))
+        Ok(report::report(&found).with_figures(figures::figures(&found)))
     }
 }
 

@@ -47,6 +47,7 @@ pub(super) fn report(found: &DockingStudy) -> Report {
         found.craft.hover_power_w()
     ));
     Report {
+        figures: Vec::new(),
         title: TITLE.to_owned(),
         paper_shows: PAPER_SHOWS.to_owned(),
         text,

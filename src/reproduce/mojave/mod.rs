@@ -1,6 +1,7 @@
 //! The test in the Mojave desert (paper, sec. 4.3.1, figure 11): pendulum and torsion of a gondola on a ring of tethers,
 //! coupled by a centre of mass beside the axis; as modes, as a flight, and as the flight's spectrum.
 
+mod figures;
 mod report;
 mod spectrum;
 
@@ -51,7 +52,7 @@ impl Case for Mojave {
         own.nodes = settings.nodes.or(own.nodes);
         own.duration_s = settings.duration_s.unwrap_or(own.duration_s);
         let found = study(simulator, &own, progress)?;
-        Ok(report::report(&own, &found))
+        Ok(report::report(&own, &found).with_figures(figures::figures(&found)))
     }
 }
 

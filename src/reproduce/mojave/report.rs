@@ -39,6 +39,7 @@ pub(super) fn report(settings: &MojaveSettings, found: &MojaveStudy) -> Report {
         text.push_str(&offset(result));
     }
     Report {
+        figures: Vec::new(),
         title: TITLE.to_owned(),
         paper_shows: PAPER_SHOWS.to_owned(),
         text,

@@ -3,6 +3,7 @@
 
 mod checks;
 mod exponents;
+mod figures;
 mod flight;
 mod report;
 mod solver;
@@ -49,7 +50,7 @@ impl Case for Performance {
             own.elements.retain(|elements| *elements <= most);
         }
         let costs = measure(simulator, &own, progress)?;
-        Ok(report::report(&own, &costs))
+        Ok(report::report(&own, &costs).with_figures(figures::figures(&costs)))
     }
 }
 

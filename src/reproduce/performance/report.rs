@@ -31,6 +31,7 @@ pub(super) fn report(settings: &PerformanceSettings, costs: &Costs) -> Report {
     let runs = costs.by_elements.iter().chain(&costs.by_length);
     let checks = checks::checks(settings, costs, &exponents);
     Report {
+        figures: Vec::new(),
         title: TITLE.to_owned(),
         paper_shows: PAPER_SHOWS.to_owned(),
         text,

@@ -2,6 +2,7 @@
 //! the downwash and on either side, the wind that drives it, and its response to the proportional law.
 
 mod checks;
+mod figures;
 mod report;
 
 use std::path::Path;
@@ -45,7 +46,7 @@ impl Case for SailCase {
         progress: &mut dyn FnMut(&str, f64),
     ) -> Result<Report, ReproduceError> {
         let found = study(simulator, settings, progress)?;
-        Ok(report::report(&found))
+        Ok(report::report(&found).with_figures(figures::figures(&found)))
     }
 }
 

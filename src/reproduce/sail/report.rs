@@ -82,6 +82,7 @@ pub(super) fn report(found: &SailStudy) -> Report {
     });
     let checks = checks::checks(found);
     Report {
+        figures: Vec::new(),
         title: TITLE.to_owned(),
         paper_shows: PAPER_SHOWS.to_owned(),
         verdict: Verdict::of(&checks, checks::sentence(found)),

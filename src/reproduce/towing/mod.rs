@@ -2,6 +2,7 @@
 //! in equilibrium, and the discrete line flown from straight down until it rests.
 
 mod checks;
+mod figures;
 mod line;
 mod report;
 
@@ -47,7 +48,7 @@ impl Case for Towing {
         own.nodes = settings.nodes.unwrap_or(own.nodes);
         own.duration_s = settings.duration_s.unwrap_or(own.duration_s);
         let results = compare(simulator, &own, progress)?;
-        Ok(report::report(&own, &results))
+        Ok(report::report(&own, &results).with_figures(figures::figures(&results)))
     }
 }
 

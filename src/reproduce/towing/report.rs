@@ -31,6 +31,7 @@ const TENSION_HEADER: &str = "wind_m_s,model,from_top_m,tension_n\n";
 pub(super) fn report(settings: &TowingSettings, results: &[WindResult]) -> Report {
     let checks = checks::checks(settings, results);
     Report {
+        figures: Vec::new(),
         title: TITLE.to_owned(),
         paper_shows: PAPER_SHOWS.to_owned(),
         text: text(settings, results),

@@ -3,6 +3,7 @@
 //! can tell.
 
 mod checks;
+mod figures;
 mod frequency;
 mod inertia;
 mod pendulum;
@@ -58,7 +59,7 @@ impl Case for Yaw {
         own.nodes = settings.nodes.or(own.nodes);
         own.duration_s = settings.duration_s.or(own.duration_s);
         let results = study(simulator, &own, progress)?;
-        Ok(report::report(&results))
+        Ok(report::report(&results).with_figures(figures::figures(&results)))
     }
 }
 

@@ -36,6 +36,7 @@ pub(super) fn report(results: &[LengthResult]) -> Report {
     text.push_str(&waves(results));
     let checks = checks::checks(results);
     Report {
+        figures: Vec::new(),
         title: TITLE.to_owned(),
         paper_shows: PAPER_SHOWS.to_owned(),
         text,
