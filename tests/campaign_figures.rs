@@ -239,8 +239,8 @@ fn the_best_of_a_search_so_far_ends_at_the_best() {
     let scratch = Scratch::folder();
     let body = r#"
     variables: {"entities.ball.Motion.velocity_m_s.0": (from: 1, to: 100)},
-    objective: Maximise(Metric("far_x_m")),
-    constraints: {"away_x_m": (of: Metric("far_x_m"), at_most: 450)},
+    objective: Maximise(Value("far_x_m")),
+    constraints: {"away_x_m": (of: Value("far_x_m"), at_most: 450)},
     metrics: {"far_x_m": Final(entity: "ball", channel: "x_m")},
     search: (sample: 4, starts: 1),
 "#;
