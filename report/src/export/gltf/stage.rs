@@ -59,12 +59,12 @@ impl Stage {
         axes::single(axes::vector(position_m - self.origin_m).to_array())
     }
 
-    /// Two cameras: one that shows the whole flight, and one that goes with the middle of the bodies.
+    /// Two cameras: one that shows the whole flight, and one that goes with what there is in each frame.
     pub(super) fn add_cameras(&self, animation: &Animation, document: &mut Document) -> Vec<usize> {
-        let count = animation.bodies.len() as f64;
-        let middles = self.frames.iter().map(|frame| {
-            let bodies = animation.bodies.iter();
-            bodies.map(|body| body.positions_m[*frame]).sum::<DVec3>() / count
+        let frames = self.frames.chunks(1);
+        let middles = frames.map(|frame| {
+            let [least, greatest] = corners(animation, frame);
+            0.5 * (least + greatest)
         });
         let middles = middles.collect();
         vec![
