@@ -17,8 +17,8 @@ use crate::scene::source::{apply, parse_override};
 use crate::scene::{Scene, SceneError};
 use crate::simulation::Simulation;
 
-/// The files that a run writes, in one format or the other, besides the tables of its scene.
-const FILES: [&str; 9] = [
+/// The files that a run writes, in one format or the other, besides the tables of its scene, and its report.
+const FILES: [&str; 10] = [
     "scene.ron",
     "states.csv",
     "tethers.csv",
@@ -28,6 +28,7 @@ const FILES: [&str; 9] = [
     "channels.parquet",
     "summary.json",
     "timing.json",
+    "report.html",
 ];
 
 /// Where a run goes.

@@ -12,7 +12,9 @@ mod export;
 mod finding;
 mod modes;
 mod optimise;
+mod plot;
 mod progress;
+mod report;
 mod reproduce;
 mod run;
 mod trim;
@@ -46,6 +48,10 @@ enum Command {
     Check(CheckArguments),
     /// Run a scene in both formulations and print how far apart they are and what each costs.
     Compare(CompareArguments),
+    /// Write a report of a finished run, or of several beside each other: one HTML file that plays and plots.
+    Report(ReportArguments),
+    /// Draw a figure of a finished run as SVG.
+    Plot(PlotArguments),
     /// Compute cases of the paper anew and set them beside what it shows.
     Reproduce(ReproduceArguments),
     /// Find the steady state of a scene in its wind, and write a scene that starts there.
@@ -115,7 +121,50 @@ struct RunArguments {
     /// Format of the tables.
     #[arg(long, value_enum, default_value = "csv")]
     format: FormatName,
+    /// Write `report.html` beside the results.
+    #[arg(long)]
+    report: bool,
     /// Write into a folder that exists.
+    #[arg(long)]
+    force: bool,
+    /// Print nothing but errors.
+    #[arg(long)]
+    quiet: bool,
+}
+
+#[derive(Args)]
+struct ReportArguments {
+    /// Folders of the runs.
+    #[arg(required = true, value_name = "DIR")]
+    folders: Vec<PathBuf>,
+    /// File for the report; `report.html` in the first folder unless given.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Overwrite a file that exists and is not a report.
+    #[arg(long)]
+    force: bool,
+    /// Print nothing but errors.
+    #[arg(long)]
+    quiet: bool,
+}
+
+#[derive(Args)]
+struct PlotArguments {
+    /// Folder of the run, of the campaign, or of a table.
+    #[arg(value_name = "DIR")]
+    folder: Option<PathBuf>,
+    /// What to draw.
+    kind: Option<String>,
+    /// List the kinds of figures and do nothing else.
+    #[arg(long)]
+    list: bool,
+    /// Folder of another run whose lines are drawn beside those of the first.
+    #[arg(long, value_name = "DIR")]
+    with: Vec<PathBuf>,
+    /// File for the figure; `KIND.svg` in the folder unless given.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Overwrite a file that exists.
     #[arg(long)]
     force: bool,
     /// Print nothing but errors.
@@ -257,6 +306,8 @@ pub fn main(plugins: &[&dyn Plugin]) -> ExitCode {
         Command::Run(arguments) => run::run(&simulator, &arguments),
         Command::Check(arguments) => check::check(&simulator, &arguments),
         Command::Compare(arguments) => compare::compare(&simulator, &arguments),
+        Command::Report(arguments) => report::report(&simulator, &arguments),
+        Command::Plot(arguments) => plot::plot(&simulator, &arguments),
         Command::Reproduce(arguments) => reproduce::reproduce(&simulator, &arguments),
         Command::Trim(arguments) => trim::trim(&simulator, &arguments),
         Command::Modes(arguments) => modes::modes(&simulator, &arguments),

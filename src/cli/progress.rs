@@ -36,6 +36,11 @@ impl PartBar {
         self.0.set_position((part * LENGTH) as u64);
     }
 
+    /// Does what prints lines of its own.
+    pub(super) fn above<T>(&self, print: impl FnOnce() -> T) -> T {
+        self.0.suspend(print)
+    }
+
     pub(super) fn clear(&self) {
         self.0.finish_and_clear();
     }

@@ -1,6 +1,7 @@
 //! `aerobot reproduce`.
 
 use std::fs;
+use std::num::NonZero;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -10,7 +11,7 @@ use aerobot_engine::scene::source::nearest;
 
 use super::progress::PartBar;
 use super::{REFUSED, ReproduceArguments, STOPPED, complain, say};
-use crate::reproduce::{Case, Settings, cases};
+use crate::reproduce::{Case, Finished, Report, ReproduceError, Settings, cases, run_cases};
 
 pub(super) fn reproduce(simulator: &Simulator, arguments: &ReproduceArguments) -> ExitCode {
     if arguments.list {
@@ -39,27 +40,23 @@ pub(super) fn reproduce(simulator: &Simulator, arguments: &ReproduceArguments) -
         nodes: arguments.nodes,
         duration_s: arguments.until,
     };
-    let mut worst = ExitCode::SUCCESS;
-    let mut written = false;
-    for case in chosen {
-        match run(simulator, &*case, &settings, &folder, arguments.quiet) {
-            Ok(finished) => {
-                written = true;
-                if !finished {
-                    worst = ExitCode::from(STOPPED);
-                }
+    let mut told = Told {
+        folder: &folder,
+        quiet: arguments.quiet,
+        written: false,
+        worst: ExitCode::SUCCESS,
+    };
+    match run(simulator, &chosen, &settings, &mut told) {
+        Ok(()) => told.worst,
+        Err(Refusal(message)) => {
+            complain(message);
+            if is_new && !told.written {
+                // Refused means that nothing was written.
+                let _ = fs::remove_dir(&folder);
             }
-            Err(message) => {
-                complain(message);
-                if is_new && !written {
-                    // Refused means that nothing was written.
-                    let _ = fs::remove_dir(&folder);
-                }
-                return ExitCode::from(REFUSED);
-            }
+            ExitCode::from(REFUSED)
         }
     }
-    worst
 }
 
 /// The case of a name, or all.
@@ -88,33 +85,91 @@ fn open(folder: &Path, force: bool) -> Result<(), RunError> {
     fs::create_dir_all(folder).map_err(|error| RunError::Io(folder.to_owned(), error))
 }
 
-/// Computes a case, prints its text and writes its tables; whether every run came to its end.
+/// Why there is no answer.
+struct Refusal(String);
+
+impl From<ReproduceError> for Refusal {
+    fn from(error: ReproduceError) -> Self {
+        Self(error.to_string())
+    }
+}
+
+/// Computes cases on all cores, prints their texts and writes their tables in the order of the paper.
 fn run(
     simulator: &Simulator,
-    case: &dyn Case,
+    chosen: &[Box<dyn Case>],
     settings: &Settings,
-    folder: &Path,
-    quiet: bool,
-) -> Result<bool, String> {
-    let bar = PartBar::new(quiet);
-    let report = case.run(simulator, settings, &mut |what, part| bar.show(what, part));
+    told: &mut Told,
+) -> Result<(), Refusal> {
+    let bar = PartBar::new(told.quiet);
+    let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
+    let result = run_cases(
+        chosen,
+        simulator,
+        settings,
+        threads,
+        &|what, part| bar.show(what, part),
+        &mut |finished| bar.above(|| told.take(&finished)),
+    );
     bar.clear();
-    let report = report.map_err(|error| error.to_string())?;
-    report
-        .write(folder)
-        .map_err(|error| RunError::Io(folder.to_owned(), error).to_string())?;
-    if !quiet {
-        say(report.text.trim_end());
-        let files: Vec<&str> = report.tables.iter().map(|table| table.file_name).collect();
-        say(format_args!(
-            "\n{}: wrote {} into `{}`",
-            case.name(),
-            files.join(", "),
-            folder.display()
-        ));
+    result
+}
+
+/// What has been told of the cases that are finished.
+struct Told<'a> {
+    folder: &'a Path,
+    quiet: bool,
+    /// Whether there are tables.
+    written: bool,
+    worst: ExitCode,
+}
+
+impl Told<'_> {
+    /// Prints the text of a case and writes its tables; what stopped and what does not hold is complained of.
+    fn take(&mut self, finished: &Finished) -> Result<(), Refusal> {
+        let (name, report) = (finished.name, &finished.report);
+        report
+            .write(self.folder)
+            .map_err(|error| Refusal(RunError::Io(self.folder.to_owned(), error).to_string()))?;
+        self.written = true;
+        if !self.quiet {
+            say(report.text.trim_end());
+            say(format_args!("\nverdict: {}", verdict(report)));
+            let files: Vec<&str> = report.tables.iter().map(|table| table.file_name).collect();
+            say(format_args!(
+                "\n{name}: wrote {} into `{}`",
+                files.join(", "),
+                self.folder.display()
+            ));
+        }
+        for stopped in &report.stopped {
+            complain(format_args!("error: {stopped}"));
+        }
+        let failed = report.checks.iter().filter(|check| check.fails());
+        for check in failed.clone() {
+            complain(format_args!("error: {name}: does not hold: {check}"));
+        }
+        if !report.stopped.is_empty() || failed.count() > 0 {
+            self.worst = ExitCode::from(STOPPED);
+        }
+        Ok(())
     }
-    for stopped in &report.stopped {
-        complain(format_args!("error: {stopped}"));
-    }
-    Ok(report.stopped.is_empty())
+}
+
+/// The verdict of a case in one line.
+fn verdict(report: &Report) -> String {
+    let independent = report
+        .checks
+        .iter()
+        .filter(|check| check.independent.is_some());
+    let (all, failed) = (
+        independent.clone().count(),
+        independent.filter(|check| check.fails()).count(),
+    );
+    let counted = match (all, failed) {
+        (0, _) => "nothing is checked with these settings.".to_owned(),
+        (_, 0) => format!("{all} checks against other answers hold."),
+        _ => format!("{failed} of {all} checks against other answers DO NOT HOLD."),
+    };
+    format!("{counted} {}", report.verdict.sentence)
 }

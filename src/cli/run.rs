@@ -11,6 +11,7 @@ use aerobot_engine::recording::table_format::TableFormat;
 use aerobot_engine::run_folder::{Destination, run_into_as};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::report::write_beside;
 use super::{FormatName, REFUSED, RunArguments, STOPPED, complain, say};
 
 pub(super) fn run(simulator: &Simulator, arguments: &RunArguments) -> ExitCode {
@@ -54,6 +55,13 @@ pub(super) fn run(simulator: &Simulator, arguments: &RunArguments) -> ExitCode {
             &finished.timing,
             &destination.folder,
         ));
+    }
+    if arguments.report {
+        match write_beside(simulator, &destination.folder) {
+            Ok(file) if !arguments.quiet => say(format_args!("report in `{}`", file.display())),
+            Ok(_) => {}
+            Err(message) => complain(message),
+        }
     }
     match &finished.summary.stopped {
         None => ExitCode::SUCCESS,

@@ -1,10 +1,19 @@
-//! The cases of the paper, computed anew: each gives a text to read and tables to plot.
+//! The cases of the paper, computed anew: each gives a text to read, tables to plot, and checks against answers
+//! that do not come from the program.
 //!
 //! A program that wants the numbers and not the text calls the module of a case, such as
 //! [`towing::compare`].
 
+pub mod chains;
 pub mod chase;
+pub mod check;
+pub mod comparison;
+pub mod docking;
+pub mod flight;
+pub mod mojave;
+pub mod pendulums;
 pub mod performance;
+mod running;
 pub mod sail;
 pub mod towing;
 pub mod yaw;
@@ -17,12 +26,19 @@ use aerobot_engine::scene::SceneError;
 use aerobot_systems::towed_cable::TowedCableError;
 use thiserror::Error;
 
+pub use check::{Answer, Check, Independent, Tolerance, Verdict};
+pub use running::{Finished, run_cases};
+
 /// A case of the paper.
-pub trait Case {
+pub trait Case: Sync {
     /// Its name on the command line, and the beginning of the names of its files.
     fn name(&self) -> &'static str;
     /// What it compares and where that stands in the paper, in one line.
     fn about(&self) -> &'static str;
+    /// Whether it measures time, so that nothing else should run beside it.
+    fn measures_time(&self) -> bool {
+        false
+    }
     /// Computes it; `progress` hears of what is under way and of the part of the whole that is done.
     ///
     /// # Errors
@@ -39,11 +55,15 @@ pub trait Case {
 #[must_use]
 pub fn cases() -> Vec<Box<dyn Case>> {
     vec![
+        Box::new(comparison::FormulationComparison),
         Box::new(performance::Performance),
+        Box::new(chains::Chains),
+        Box::new(mojave::Mojave),
         Box::new(yaw::Yaw),
         Box::new(towing::Towing),
         Box::new(sail::SailCase),
         Box::new(chase::Chase),
+        Box::new(docking::DockingCase),
     ]
 }
 
@@ -59,8 +79,16 @@ pub struct Settings {
 /// What comes out of a case.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
+    /// What the case is and where it stands in the paper, in a line.
+    pub title: String,
+    /// What the paper shows, in a few sentences.
+    pub paper_shows: String,
     /// The text for a reader.
     pub text: String,
+    /// What is claimed, and whether it holds; none where the settings leave too little to judge.
+    pub checks: Vec<Check>,
+    /// What it comes to.
+    pub verdict: Verdict,
     /// The tables for other programs.
     pub tables: Vec<Table>,
     /// Runs that stopped before their end, and why.

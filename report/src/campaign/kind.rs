@@ -43,6 +43,18 @@ impl CampaignFigure {
             Self::Convergence => "convergence",
         }
     }
+
+    /// What it shows, in a few words.
+    #[must_use]
+    pub fn about(self) -> &'static str {
+        match self {
+            Self::Envelope => "of a campaign: percentiles as time goes",
+            Self::Histogram => "of a campaign: how often each metric has which values",
+            Self::Ellipse => "of a campaign: where bodies end, with ellipses of their covariance",
+            Self::Tornado => "of a campaign: which field drives which metric",
+            Self::Convergence => "of a campaign: how means settle as runs come in",
+        }
+    }
 }
 
 impl fmt::Display for CampaignFigure {

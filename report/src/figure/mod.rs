@@ -1,6 +1,11 @@
 //! A figure as data: panels of series over axes with units. It is drawn in two ways, as SVG for papers and
 //! as a part of a page.
 
+pub mod interactive;
+pub mod svg;
+pub mod thinning;
+pub mod tone;
+
 use serde::Serialize;
 
 /// A figure.

@@ -1,6 +1,7 @@
 //! The drone that chases the gondola (sec. 5.4, figures 20 and 21), in the air that the paper's figure needs,
 //! and in the two in which it cannot be had.
 
+mod checks;
 mod report;
 
 use std::path::Path;

@@ -2,7 +2,9 @@
 
 use aerobot_engine::recording::number::number_text;
 
+use super::super::check::Verdict;
 use super::super::{Report, Table};
+use super::checks::{self, PAPER_SHOWS, TITLE};
 use super::{ChaseFlight, DroneAir};
 
 const HEAD: &str = "\
@@ -28,8 +30,13 @@ pub(super) fn report(flights: &[ChaseFlight]) -> Report {
             flight.air.name()
         ))
     });
+    let checks = checks::checks(flights);
     Report {
+        title: TITLE.to_owned(),
+        paper_shows: PAPER_SHOWS.to_owned(),
         text: text(flights),
+        verdict: Verdict::of(&checks, checks::sentence(flights)),
+        checks,
         tables: vec![Table {
             file_name: "chase.csv",
             text: table(flights),

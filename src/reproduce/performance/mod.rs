@@ -1,6 +1,7 @@
 //! The performance study of the paper (sec. 4.3, figures 7 and 8): what a simulated second costs as the
 //! tether has more elements, and as it is longer; both formulations, explicit and implicit.
 
+mod checks;
 mod exponents;
 mod flight;
 mod report;
@@ -30,6 +31,10 @@ impl Case for Performance {
 
     fn about(&self) -> &'static str {
         "cost against the number of elements and the length, both formulations (sec. 4.3, figures 7, 8)"
+    }
+
+    fn measures_time(&self) -> bool {
+        true
     }
 
     fn run(

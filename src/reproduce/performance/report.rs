@@ -1,6 +1,8 @@
 //! The performance case as a text.
 
 use super::super::Report;
+use super::super::check::Verdict;
+use super::checks::{self, PAPER_SHOWS, TITLE};
 use super::{
     Costs, Exponent, Extent, Measured, PerformanceSettings, Quantity, SOLVERS, Solver, Study,
     exponents, tables, why,
@@ -27,8 +29,13 @@ pub(super) fn report(settings: &PerformanceSettings, costs: &Costs) -> Report {
     text.push_str(&exponent_table(&exponents));
     text.push_str(&why::why(settings, costs, &exponents));
     let runs = costs.by_elements.iter().chain(&costs.by_length);
+    let checks = checks::checks(settings, costs, &exponents);
     Report {
+        title: TITLE.to_owned(),
+        paper_shows: PAPER_SHOWS.to_owned(),
         text,
+        verdict: Verdict::of(&checks, checks::sentence()),
+        checks,
         tables: tables::tables(costs, &exponents),
         stopped: runs.filter_map(stopped).collect(),
     }

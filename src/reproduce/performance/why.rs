@@ -40,10 +40,16 @@ impl Powers<'_> {
     }
 }
 
+/// Whether there are sizes enough to tell why costs grow, and runs in which the gusts have passed.
+pub(super) fn are_enough(settings: &PerformanceSettings, exponents: &[Exponent]) -> bool {
+    let is_long = settings.duration_s >= PerformanceSettings::default().duration_s;
+    is_long && Powers(exponents).are_complete()
+}
+
 /// The reasons; none where sizes are lacking to tell, or where runs end before the gusts have passed.
 pub(super) fn why(settings: &PerformanceSettings, costs: &Costs, exponents: &[Exponent]) -> String {
     let powers = Powers(exponents);
-    if !powers.are_complete() || settings.duration_s < PerformanceSettings::default().duration_s {
+    if !are_enough(settings, exponents) {
         return "\nToo few sizes, or too short runs, to say why.\n".to_owned();
     }
     let paragraphs = [

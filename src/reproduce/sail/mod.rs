@@ -1,6 +1,7 @@
 //! The sail of the paper (sec. 5.2, figures 17 to 19): how it trims and whether it is stable with either sign of
 //! the downwash and on either side, the wind that drives it, and its response to the proportional law.
 
+mod checks;
 mod report;
 
 use std::path::Path;

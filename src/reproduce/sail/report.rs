@@ -3,7 +3,9 @@
 use aerobot_engine::recording::number::number_text;
 use aerobot_systems::environment::zonal_wind;
 
+use super::super::check::Verdict;
 use super::super::{Report, Table};
+use super::checks::{self, PAPER_SHOWS, TITLE};
 use super::{BAND_M, SailStudy};
 
 const HEAD: &str = "\
@@ -78,7 +80,12 @@ pub(super) fn report(found: &SailStudy) -> Report {
         let reason = response.stopped.as_ref()?;
         Some(format!("sail: {words}: stopped: {reason}"))
     });
+    let checks = checks::checks(found);
     Report {
+        title: TITLE.to_owned(),
+        paper_shows: PAPER_SHOWS.to_owned(),
+        verdict: Verdict::of(&checks, checks::sentence(found)),
+        checks,
         stopped: stopped.collect(),
         tables: vec![
             Table {

@@ -1,6 +1,7 @@
 //! The towing case (paper, sec. 5.1, figure 15): a continuous cable in equilibrium, the discrete line
 //! in equilibrium, and the discrete line flown from straight down until it rests.
 
+mod checks;
 mod line;
 mod report;
 

@@ -2,7 +2,9 @@
 
 use aerobot_engine::recording::number::number_text;
 
+use super::super::check::Verdict;
 use super::super::{Report, Table};
+use super::checks::{self, PAPER_SHOWS, TITLE};
 use super::{LineShape, TowingSettings, WindResult};
 
 const HEAD: &str = "\
@@ -27,8 +29,13 @@ const SHAPES_HEADER: &str = "wind_m_s,model,point,from_top_m,x_m,z_m\n";
 const TENSION_HEADER: &str = "wind_m_s,model,from_top_m,tension_n\n";
 
 pub(super) fn report(settings: &TowingSettings, results: &[WindResult]) -> Report {
+    let checks = checks::checks(settings, results);
     Report {
+        title: TITLE.to_owned(),
+        paper_shows: PAPER_SHOWS.to_owned(),
         text: text(settings, results),
+        verdict: Verdict::of(&checks, checks::sentence(settings, results)),
+        checks,
         tables: vec![
             Table {
                 file_name: "towing.csv",

@@ -2,6 +2,7 @@
 //! of tethers, elastic and inextensible, beside the multifilar pendulum and beside what a transform of 15 s
 //! can tell.
 
+mod checks;
 mod frequency;
 mod inertia;
 mod pendulum;

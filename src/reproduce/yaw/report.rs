@@ -2,7 +2,9 @@
 
 use aerobot_engine::recording::number::number_text;
 
+use super::super::check::Verdict;
 use super::super::{Report, Table};
+use super::checks::{self, PAPER_SHOWS, TITLE};
 use super::inertia::{bin_of_table, bin_with, range_of_table};
 use super::{CrossingFrequency, LengthResult, MultifilarPendulum, PAPER_RECORD_S, YawFlight};
 
@@ -32,8 +34,13 @@ pub(super) fn report(results: &[LengthResult]) -> Report {
     text.push_str(&amplitudes(results));
     text.push_str(&inertia(results));
     text.push_str(&waves(results));
+    let checks = checks::checks(results);
     Report {
+        title: TITLE.to_owned(),
+        paper_shows: PAPER_SHOWS.to_owned(),
         text,
+        verdict: Verdict::of(&checks, checks::sentence(results)),
+        checks,
         tables: vec![
             Table {
                 file_name: "yaw.csv",

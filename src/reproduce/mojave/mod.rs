@@ -1,0 +1,202 @@
+//! The test in the Mojave desert (paper, sec. 4.3.1, figure 11): pendulum and torsion of a gondola on a ring of tethers,
+//! coupled by a centre of mass beside the axis; as modes, as a flight, and as the flight's spectrum.
+
+mod report;
+mod spectrum;
+
+use aerobot_components::run::Formulation;
+use aerobot_engine::modes::{Mode, ModesRequest, Motion};
+use aerobot_engine::plugin::Simulator;
+use aerobot_engine::scene::SceneError;
+
+pub use spectrum::Spectrum;
+
+use super::flight::{Flight, PaperScene, formulation_override};
+use super::pendulums::HungPair;
+use super::{Case, Report, ReproduceError, Settings};
+
+/// The scene of the case.
+const SCENE: PaperScene = PaperScene {
+    name: "scenes/paper/mojave_test.ron",
+    text: include_str!("../../../scenes/paper/mojave_test.ron"),
+};
+/// The names of its entities.
+pub(super) const BALLOON: &str = "balloon";
+pub(super) const GONDOLA: &str = "gondola";
+/// Spectra begin here, s: the gust has passed.
+pub const CALM_S: f64 = 12.0;
+/// Spectra end here, Hz.
+const HIGHEST_HZ: f64 = 1.0;
+
+/// Pendulum and torsion coupled.
+#[derive(Clone, Copy, Debug)]
+pub struct Mojave;
+
+impl Case for Mojave {
+    fn name(&self) -> &'static str {
+        "mojave"
+    }
+
+    fn about(&self) -> &'static str {
+        "a gondola off the axis of its ring: pendulum and torsion coupled (sec. 4.3.1, figure 11)"
+    }
+
+    fn run(
+        &self,
+        simulator: &Simulator,
+        settings: &Settings,
+        progress: &mut dyn FnMut(&str, f64),
+    ) -> Result<Report, ReproduceError> {
+        let mut own = MojaveSettings::default();
+        own.nodes = settings.nodes.or(own.nodes);
+        own.duration_s = settings.duration_s.unwrap_or(own.duration_s);
+        let found = study(simulator, &own, progress)?;
+        Ok(report::report(&own, &found))
+    }
+}
+
+/// What is studied.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MojaveSettings {
+    /// Offsets of the ring's centre from the gondola's centre of mass, along y, m.
+    pub offsets_m: Vec<f64>,
+    /// The offset of the flight in rigid links, m.
+    pub offset_of_links_m: f64,
+    /// Nodes of each tether, if not those of the scene.
+    pub nodes: Option<u32>,
+    /// Simulated time, s: as long as frequencies 0.008 Hz apart are to be told apart.
+    pub duration_s: f64,
+}
+
+impl Default for MojaveSettings {
+    fn default() -> Self {
+        Self {
+            offsets_m: vec![0.0, 0.05, 0.1, -0.1],
+            offset_of_links_m: 0.1,
+            nodes: None,
+            duration_s: 300.0,
+        }
+    }
+}
+
+/// All of the case.
+#[derive(Clone, Debug)]
+pub struct MojaveStudy {
+    /// Lumped masses, for each offset.
+    pub offsets: Vec<OffsetResult>,
+    /// Rigid links, for one.
+    pub links: OffsetFlight,
+}
+
+/// One offset of the ring from the centre of mass.
+#[derive(Clone, Debug)]
+pub struct OffsetResult {
+    /// The flight.
+    pub flown: OffsetFlight,
+    /// Balloon and gondola as they hang, for closed forms.
+    pub pair: HungPair,
+    /// Modes of small motions about the rest, slowest first.
+    pub modes: Vec<Mode>,
+    /// Spectrum of the swing along x, rad.
+    pub swing: Spectrum,
+    /// Spectrum of the turn of the gondola against the balloon, rad.
+    pub turn: Spectrum,
+}
+
+impl OffsetResult {
+    /// Frequency of the oscillating mode with the largest share of a motion of the gondola, Hz.
+    #[must_use]
+    pub fn mode_hz(&self, motion: Motion) -> Option<f64> {
+        let own = self.modes.iter().filter(|mode| mode.oscillates());
+        let share = |mode: &Mode| mode.share(GONDOLA, motion);
+        let most = own.max_by(|a, b| share(a).total_cmp(&share(b)))?;
+        Some(most.frequency_hz())
+    }
+}
+
+/// A flight with an offset.
+#[derive(Clone, Debug)]
+pub struct OffsetFlight {
+    /// The offset along y, m.
+    pub offset_m: f64,
+    /// The flight.
+    pub flight: Flight,
+}
+
+impl OffsetFlight {
+    /// Time (s) and swing of the gondola below the balloon along x, rad.
+    #[must_use]
+    pub fn swing(&self) -> Vec<(f64, f64)> {
+        self.flight.results.channel(GONDOLA, "swing_x_rad")
+    }
+
+    /// Time (s) and heading of the gondola less that of the balloon, rad.
+    #[must_use]
+    pub fn turn(&self) -> Vec<(f64, f64)> {
+        let of = |body| self.flight.results.channel(body, "heading_rad");
+        let pairs = of(GONDOLA).into_iter().zip(of(BALLOON));
+        pairs
+            .map(|((time_s, gondola), (_, balloon))| (time_s, gondola - balloon))
+            .collect()
+    }
+}
+
+/// Flies the scene with every offset.
+///
+/// # Errors
+/// A scene that cannot be built.
+pub fn study(
+    simulator: &Simulator,
+    settings: &MojaveSettings,
+    progress: &mut dyn FnMut(&str, f64),
+) -> Result<MojaveStudy, SceneError> {
+    let count = (settings.offsets_m.len() + 1) as f64;
+    let mut done = 0.0;
+    let mut fly = |offset_m: f64, formulation: Formulation| {
+        let scene = scene(simulator, settings, offset_m, formulation)?;
+        let what = format!("{offset_m} m, {}", formulation.name());
+        let mut part = |part: f64| progress(&what, (done + part) / count);
+        let flight = Flight::of(simulator, &scene, &mut part)?;
+        done += 1.0;
+        Ok::<_, SceneError>((OffsetFlight { offset_m, flight }, scene))
+    };
+    let mut offsets = Vec::new();
+    for offset_m in &settings.offsets_m {
+        let (flown, scene) = fly(*offset_m, Formulation::LumpedMass)?;
+        let mut simulation = simulator.build(&scene)?;
+        let interval_s = scene.run.output_every_s;
+        offsets.push(OffsetResult {
+            pair: HungPair::of(&scene, &simulation, BALLOON, GONDOLA)?,
+            modes: simulation.modes(&scene, &ModesRequest::default())?.modes,
+            swing: calm(&flown.swing(), interval_s),
+            turn: calm(&flown.turn(), interval_s),
+            flown,
+        });
+    }
+    let (links, _) = fly(settings.offset_of_links_m, Formulation::Denoc)?;
+    Ok(MojaveStudy { offsets, links })
+}
+
+/// The spectrum of what is recorded after the gust.
+fn calm(record: &[(f64, f64)], interval_s: f64) -> Spectrum {
+    let values = record.iter().filter(|(time_s, _)| *time_s >= CALM_S);
+    let values: Vec<f64> = values.map(|(_, value)| *value).collect();
+    Spectrum::of(&values, interval_s, HIGHEST_HZ)
+}
+
+fn scene(
+    simulator: &Simulator,
+    settings: &MojaveSettings,
+    offset_m: f64,
+    formulation: Formulation,
+) -> Result<aerobot_engine::scene::Scene, SceneError> {
+    let mut overrides = vec![
+        formulation_override(formulation),
+        format!("entities.suspension.Tethers.to=(\"{GONDOLA}\", (0, {offset_m:?}, 0.2))"),
+        format!("run.duration_s={:?}", settings.duration_s),
+    ];
+    if let Some(nodes) = settings.nodes {
+        overrides.push(format!("entities.suspension.Tethers.nodes={nodes}"));
+    }
+    SCENE.load(simulator, &overrides)
+}
