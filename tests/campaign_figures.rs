@@ -11,8 +11,9 @@ mod program;
 use std::fs;
 use std::path::Path;
 
-use aerobot_report::campaign::{CampaignFigure, CampaignRecord};
+use aerobot_report::campaign::{CampaignFigure, CampaignRecord, SearchRecord};
 use aerobot_report::figure::{Figure, Mark, Panel, Series};
+use program::searches::{THROW, optimised};
 use program::{Scratch, aerobot, text};
 
 /// A stone that is thrown in a vacuum and flies for 2 s: it ends at twice its velocity along x and y, and falls
@@ -190,7 +191,7 @@ fn runs_of_a_base_sample_count_once_and_failures_are_listed() {
     assert!(record.failures().is_empty());
 
     let scratch = Scratch::folder();
-    let vary = r#"runs: 12, vary: {"entities.stone.Sphere.radius_m": Uniform(-0.1, 0.1)},"#;
+    let vary = r#"runs: 12, vary: {"entities.stone.Sphere.radius_m": Uniform(-0.05, 0.1)},"#;
     let record = thrown(&scratch, &format!("{vary}{METRICS}"));
     let failures = record.failures();
     let of_summary = record.summary.failures.iter().map(|failure| failure.runs);
@@ -229,5 +230,44 @@ fn what_is_no_finished_campaign_is_refused() {
             .parse::<CampaignFigure>()
             .unwrap_err()
             .contains("there is no figure `pie`")
+    );
+}
+
+/// A throw of vx m/s is 10 vx m away after 10 s: as far as that may be, 450 m.
+#[test]
+fn the_best_of_a_search_so_far_ends_at_the_best() {
+    let scratch = Scratch::folder();
+    let body = r#"
+    variables: {"entities.ball.Motion.velocity_m_s.0": (from: 1, to: 100)},
+    objective: Maximise(Value("far_x_m")),
+    constraints: {"away_x_m": (of: Value("far_x_m"), at_most: 450)},
+    metrics: {"far_x_m": Final(entity: "ball", channel: "x_m")},
+    search: (sample: 4, starts: 1),
+"#;
+    let best = optimised(&scratch, THROW, body);
+    let record = SearchRecord::read(Path::new(&scratch.path("out"))).unwrap();
+    let so_far = record.best_so_far();
+    assert_eq!(so_far.last().unwrap().1, best.objective());
+    assert!(so_far.windows(2).all(|pair| pair[0].1 <= pair[1].1));
+    let figure = record.figure();
+    let [objective, away] = &figure.panels[..] else {
+        panic!("{} panels", figure.panels.len());
+    };
+    assert_eq!(objective.y.label, "objective, the more the better [m]");
+    assert_eq!(
+        (away.y.label.as_str(), &series(away, "limit")[0].y),
+        ("away x [m]", &vec![450.0; 2])
+    );
+    assert!(
+        series(away, "feasible")[0]
+            .y
+            .iter()
+            .all(|value| *value <= 450.0)
+    );
+    assert!(
+        series(away, "infeasible")[0]
+            .y
+            .iter()
+            .all(|value| *value > 450.0)
     );
 }

@@ -34,7 +34,7 @@ pub struct Envelope {
 }
 
 /// A table row by row, so that one of a million runs is never held as text.
-struct Table {
+pub(super) struct Table {
     header: Vec<String>,
     reader: BufReader<File>,
     file: String,
@@ -42,7 +42,7 @@ struct Table {
 }
 
 impl Table {
-    fn open(path: &Path) -> Result<Self, CampaignError> {
+    pub(super) fn open(path: &Path) -> Result<Self, CampaignError> {
         let file = File::open(path).map_err(|error| CampaignError::unreadable(path, &error))?;
         let mut table = Self {
             header: Vec::new(),
@@ -55,7 +55,7 @@ impl Table {
     }
 
     /// The fields of the next row.
-    fn next(&mut self) -> Result<Option<Vec<String>>, CampaignError> {
+    pub(super) fn next(&mut self) -> Result<Option<Vec<String>>, CampaignError> {
         let mut text = String::new();
         let read = self.reader.read_line(&mut text);
         let read =
@@ -72,12 +72,12 @@ impl Table {
         Ok(Some(row))
     }
 
-    fn refuse(&self, reason: &str) -> CampaignError {
+    pub(super) fn refuse(&self, reason: &str) -> CampaignError {
         CampaignError::refused(format_args!("{}:{}: {reason}", self.file, self.line), "")
     }
 
     /// The place of a column.
-    fn column(&self, name: &str) -> Result<usize, CampaignError> {
+    pub(super) fn column(&self, name: &str) -> Result<usize, CampaignError> {
         let place = self.header.iter().position(|column| column == name);
         place.ok_or_else(|| {
             let message = format!("{}:1: there is no column `{name}`", self.file);
@@ -86,7 +86,7 @@ impl Table {
     }
 
     /// A number, or none where the field is empty.
-    fn number(&self, text: &str) -> Result<Option<f64>, CampaignError> {
+    pub(super) fn number(&self, text: &str) -> Result<Option<f64>, CampaignError> {
         if text.is_empty() {
             return Ok(None);
         }
@@ -95,7 +95,7 @@ impl Table {
         value.ok_or_else(refuse).map(Some)
     }
 
-    fn whole(&self, text: &str) -> Result<u64, CampaignError> {
+    pub(super) fn whole(&self, text: &str) -> Result<u64, CampaignError> {
         let refuse = |_| self.refuse(&format!("`{text}` is not a whole number"));
         text.parse().map_err(refuse)
     }

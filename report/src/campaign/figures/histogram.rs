@@ -90,13 +90,13 @@ mod tests {
 
     #[test]
     fn every_value_is_in_one_bar() {
-        let values: Vec<f64> = (0..1000).map(f64::from).collect();
+        let values: Vec<f64> = (0..=1000).map(f64::from).collect();
         let (bars, width) = bars(&values).unwrap_or_default();
-        // 2 x 499.5 / 10 is 99.9, so that ten bars are not quite enough.
-        assert_eq!(bars.len(), 10);
-        assert!((width - 99.9).abs() < 1e-12);
-        assert_eq!(bars.iter().map(|bar| bar.1).sum::<f64>(), 1000.0);
-        assert!(bars.iter().all(|bar| (99.0..=101.0).contains(&bar.1)));
+        // 2 x 500 / cbrt(1001) is 99.97, so that ten bars are not quite enough.
+        assert_eq!(bars.len(), 11);
+        assert!((width - 1000.0 / 11.0).abs() < 1e-12);
+        assert_eq!(bars.iter().map(|bar| bar.1).sum::<f64>(), 1001.0);
+        assert!(bars.iter().all(|bar| (90.0..=92.0).contains(&bar.1)));
         assert_eq!(
             super::bars(&[3.0, 3.0]).map(|bars| bars.0),
             Some(vec![(3.0, 2.0)])

@@ -9,7 +9,7 @@ pub(super) mod tornado;
 use aerobot_engine::campaign::quantity::unit_symbol;
 
 /// A name in a table as the label of an axis, its unit in brackets: `swing largest [rad]`.
-fn axis_label(name: &str, unit: &str) -> String {
+pub(super) fn axis_label(name: &str, unit: &str) -> String {
     let plain = name.strip_suffix(&format!("_{unit}")).unwrap_or(name);
     let words = plain.replace('_', " ");
     match unit {

@@ -10,8 +10,8 @@ use super::stage::Stage;
 use crate::animation::{Animation, TetherMotion};
 use crate::export::meshes::Shape;
 
-/// Smallest diameter that is shown, as a part of the size of what is shown: a pixel or so.
-const THINNEST: f64 = 1e-3;
+/// Smallest diameter that is shown, as a part of half the diagonal of what is shown: a pixel or so.
+const THINNEST: f64 = 2e-3;
 
 /// Adds a node for each tether with one for each of its segments; gives the former.
 pub(super) fn add(animation: &Animation, stage: &Stage, document: &mut Document) -> Vec<usize> {

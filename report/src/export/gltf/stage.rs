@@ -23,7 +23,7 @@ pub(super) struct Stage {
     pub(super) origin_m: DVec3,
     /// Half the diagonal of the box about everything in all frames, m.
     reach_m: f64,
-    /// The same of the first frame alone, m.
+    /// The same of single frames, their median, m.
     pub(super) size_m: f64,
 }
 
@@ -39,14 +39,18 @@ impl Stage {
                 times_s.push([time_s]);
             }
         }
-        let first = corners(animation, &frames[..1]);
+        let half_diagonal_m = |[least, greatest]: [DVec3; 2]| 0.5 * (greatest - least).length();
+        let sizes_m = frames.chunks(1);
+        let sizes_m = sizes_m.map(|frame| half_diagonal_m(corners(animation, frame)));
+        let mut sizes_m: Vec<f64> = sizes_m.collect();
+        sizes_m.sort_by(f64::total_cmp);
         let [least, greatest] = corners(animation, &frames);
         Self {
+            size_m: sizes_m[frames.len() / 2],
             frames,
             times_s,
             origin_m: (0.5 * (least + greatest)).round(),
-            reach_m: 0.5 * (greatest - least).length(),
-            size_m: 0.5 * (first[1] - first[0]).length(),
+            reach_m: half_diagonal_m([least, greatest]),
         }
     }
 
@@ -55,12 +59,12 @@ impl Stage {
         axes::single(axes::vector(position_m - self.origin_m).to_array())
     }
 
-    /// Two cameras: one that shows the whole flight, and one that goes with the middle of the bodies.
+    /// Two cameras: one that shows the whole flight, and one that goes with what there is in each frame.
     pub(super) fn add_cameras(&self, animation: &Animation, document: &mut Document) -> Vec<usize> {
-        let count = animation.bodies.len() as f64;
-        let middles = self.frames.iter().map(|frame| {
-            let bodies = animation.bodies.iter();
-            bodies.map(|body| body.positions_m[*frame]).sum::<DVec3>() / count
+        let frames = self.frames.chunks(1);
+        let middles = frames.map(|frame| {
+            let [least, greatest] = corners(animation, frame);
+            0.5 * (least + greatest)
         });
         let middles = middles.collect();
         vec![
