@@ -194,3 +194,45 @@ fn verdict(report: &Report) -> String {
     };
     format!("{counted} {}", report.verdict.sentence)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reproduce::{Check, Verdict};
+
+    /// The exit code, and whether the verdict says that something does not hold.
+    fn of(checks: Vec<Check>) -> (String, bool) {
+        let report = Report {
+            verdict: Verdict::of(&checks, "So it is."),
+            checks,
+            ..Report::default()
+        };
+        let words = verdict(&report);
+        let mut told = Told {
+            folder: Path::new("."),
+            quiet: true,
+            written: false,
+            worst: ExitCode::SUCCESS,
+        };
+        let finished = Finished {
+            name: "case",
+            report,
+            wall_s: 0.0,
+        };
+        assert!(told.take(&finished).is_ok());
+        (format!("{:?}", told.worst), words.contains("DO NOT HOLD"))
+    }
+
+    /// A difference from the paper is no failure; one from an answer other than the paper's is.
+    #[test]
+    fn what_contradicts_an_independent_answer_is_a_failure() {
+        let number = || Check::of("length", "m", 1.0);
+        let [done, stopped] = [ExitCode::SUCCESS, ExitCode::from(STOPPED)];
+        let [done, stopped] = [format!("{done:?}"), format!("{stopped:?}")];
+        let differs = number().paper(2.0).as_in_paper("the same", false);
+        assert_eq!(of(vec![differs]), (done.clone(), false));
+        assert_eq!(of(vec![number().at_most(1.0, "by hand")]), (done, false));
+        let wrong = number().at_most(0.5, "by hand");
+        assert_eq!(of(vec![wrong]), (stopped, true));
+    }
+}

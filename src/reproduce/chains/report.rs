@@ -22,7 +22,7 @@ knows trees. Here both formulations close loops. Values are chosen in `scenes/pa
 ";
 
 /// Times whose shapes are in the table, s: at rest, in each gust, and at the end.
-pub const SHAPES_S: [f64; 6] = [0.0, 15.0, 25.0, 50.5, 55.0, 100.0];
+const SHAPES_S: [f64; 6] = [0.0, 15.0, 25.0, 50.5, 55.0, 100.0];
 
 pub(super) fn report(results: &[ChainResult]) -> Report {
     let checks = checks::checks(results);

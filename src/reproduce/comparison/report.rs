@@ -225,18 +225,17 @@ fn limit_checks(found: &ComparisonStudy) -> Vec<Check> {
 }
 
 fn sentence(found: &ComparisonStudy) -> String {
-    let mut approach = String::new();
-    if let (Some((_, first_m)), Some((factor, last_m))) = (found.limit.first(), found.limit.last())
-    {
-        approach = format!(
-            ": the stretch alone, which vanishes as 1/EA ({first_m:.2} m at the scene's EA, {last_m:.1e} m at {} times \
-             that)",
+    let stretch = match (found.limit.first(), found.limit.last()) {
+        (Some((_, first_m)), Some((factor, last_m))) => format!(
+            " That is the stretch of the tether, and vanishes as 1/EA: with all masses on nodes {first_m:.2e} m at the \
+             scene's EA, {last_m:.1e} m at {} times that.",
             number_text(*factor)
-        );
-    }
+        ),
+        _ => String::new(),
+    };
     format!(
         "As in the paper both formulations fly one trajectory, but they do not coincide: they differ by up to {:.2} m \
-         of {:.0} m{approach}.",
+         of {:.0} m.{stretch}",
         apart_m(found),
         moved_m(found)
     )

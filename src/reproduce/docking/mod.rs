@@ -66,7 +66,7 @@ pub struct DockingSettings {
     pub nodes: Option<u32>,
     /// Simulated time, s.
     pub duration_s: f64,
-    /// Time between outputs, s.
+    /// Time between outputs, s: as far as momentum at the impact is told by a straight line.
     pub output_every_s: f64,
 }
 
@@ -76,7 +76,7 @@ impl Default for DockingSettings {
             seeds: vec![1, 2, 3, 4],
             nodes: None,
             duration_s: 120.0,
-            output_every_s: 0.1,
+            output_every_s: 0.02,
         }
     }
 }

@@ -8,10 +8,11 @@ mod spectrum;
 use aerobot_components::run::Formulation;
 use aerobot_engine::modes::{Mode, ModesRequest, Motion};
 use aerobot_engine::plugin::Simulator;
-use aerobot_engine::scene::SceneError;
+use aerobot_engine::scene::{Scene, SceneError};
 
 pub use spectrum::Spectrum;
 
+use super::check::largest;
 use super::flight::{Flight, PaperScene, formulation_override};
 use super::pendulums::HungPair;
 use super::{Case, Report, ReproduceError, Settings};
@@ -61,7 +62,7 @@ impl Case for Mojave {
 pub struct MojaveSettings {
     /// Offsets of the ring's centre from the gondola's centre of mass, along y, m.
     pub offsets_m: Vec<f64>,
-    /// The offset of the flight in rigid links, m.
+    /// The offset of the flights in rigid links, m.
     pub offset_of_links_m: f64,
     /// Nodes of each tether, if not those of the scene.
     pub nodes: Option<u32>,
@@ -87,6 +88,9 @@ pub struct MojaveStudy {
     pub offsets: Vec<OffsetResult>,
     /// Rigid links, for one.
     pub links: OffsetFlight,
+    /// EA over that of the scene, and the largest difference in the turn between lumped masses and the links that they
+    /// become, rad, with the largest turn of the links, rad; with the offset of `links`, until 60 s.
+    pub limit: Vec<(f64, f64, f64)>,
 }
 
 /// One offset of the ring from the centre of mass.
@@ -151,10 +155,10 @@ pub fn study(
     settings: &MojaveSettings,
     progress: &mut dyn FnMut(&str, f64),
 ) -> Result<MojaveStudy, SceneError> {
-    let count = (settings.offsets_m.len() + 1) as f64;
+    let count = (settings.offsets_m.len() + 2 + STIFFNESS_FACTORS.len()) as f64;
     let mut done = 0.0;
-    let mut fly = |offset_m: f64, formulation: Formulation| {
-        let scene = scene(simulator, settings, offset_m, formulation)?;
+    let mut fly = |offset_m: f64, formulation: Formulation, more: &[String]| {
+        let scene = scene(simulator, settings, offset_m, formulation, more)?;
         let what = format!("{offset_m} m, {}", formulation.name());
         let mut part = |part: f64| progress(&what, (done + part) / count);
         let flight = Flight::of(simulator, &scene, &mut part)?;
@@ -163,7 +167,7 @@ pub fn study(
     };
     let mut offsets = Vec::new();
     for offset_m in &settings.offsets_m {
-        let (flown, scene) = fly(*offset_m, Formulation::LumpedMass)?;
+        let (flown, scene) = fly(*offset_m, Formulation::LumpedMass, &[])?;
         let mut simulation = simulator.build(&scene)?;
         let interval_s = scene.run.output_every_s;
         offsets.push(OffsetResult {
@@ -174,8 +178,51 @@ pub fn study(
             flown,
         });
     }
-    let (links, _) = fly(settings.offset_of_links_m, Formulation::Denoc)?;
-    Ok(MojaveStudy { offsets, links })
+    let offset_m = settings.offset_of_links_m;
+    let (links, _) = fly(offset_m, Formulation::Denoc, &[])?;
+    let until_s = settings.duration_s.min(LIMIT_S);
+    let (rigid, _) = fly(offset_m, Formulation::Denoc, &point_masses(until_s))?;
+    let rigid = rigid.turn();
+    let mut limit = Vec::new();
+    for factor in STIFFNESS_FACTORS {
+        let (elastic, _) = fly(offset_m, Formulation::LumpedMass, &stiffer(until_s, factor))?;
+        let pairs = elastic.turn().into_iter().zip(&rigid);
+        let apart_rad = largest(pairs.map(|((_, a), (_, b))| (a - b).abs()));
+        let most_rad = largest(rigid.iter().map(|(_, turn)| turn.abs()));
+        limit.push((factor, apart_rad, most_rad));
+    }
+    Ok(MojaveStudy {
+        offsets,
+        links,
+        limit,
+    })
+}
+
+/// Factors of EA for which the formulations are compared.
+const STIFFNESS_FACTORS: [f64; 2] = [1.0, 10.0];
+/// For so long, s.
+const LIMIT_S: f64 = 60.0;
+
+/// Links with their masses at the joints: what lumped masses become as EA grows without end.
+fn point_masses(until_s: f64) -> Vec<String> {
+    vec![
+        format!("run.duration_s={until_s:?}"),
+        "entities.suspension.Tethers.lumping=Interior".to_owned(),
+        "run.links=PointMass".to_owned(),
+        "run.integrator=Adaptive(relative_tolerance: 1e-8)".to_owned(),
+    ]
+}
+
+/// Lumped masses with EA times `factor`, and with the damping that leaves the damping ratios what they were.
+fn stiffer(until_s: f64, factor: f64) -> Vec<String> {
+    let (stiffness_n, damping_n_s_m) = (5e4 * factor, 5.0 * factor.sqrt());
+    vec![
+        format!("run.duration_s={until_s:?}"),
+        "entities.suspension.Tethers.lumping=Interior".to_owned(),
+        format!("entities.suspension.Tethers.axial_stiffness_n={stiffness_n:?}"),
+        format!("entities.suspension.Tethers.damping_n_s_m={damping_n_s_m:?}"),
+        "run.integrator=Implicit(accuracy_m: 1e-6)".to_owned(),
+    ]
 }
 
 /// The spectrum of what is recorded after the gust.
@@ -190,12 +237,16 @@ fn scene(
     settings: &MojaveSettings,
     offset_m: f64,
     formulation: Formulation,
-) -> Result<aerobot_engine::scene::Scene, SceneError> {
+    more: &[String],
+) -> Result<Scene, SceneError> {
     let mut overrides = vec![
         formulation_override(formulation),
         format!("entities.suspension.Tethers.to=(\"{GONDOLA}\", (0, {offset_m:?}, 0.2))"),
-        format!("run.duration_s={:?}", settings.duration_s),
     ];
+    overrides.extend_from_slice(more);
+    if more.is_empty() {
+        overrides.push(format!("run.duration_s={:?}", settings.duration_s));
+    }
     if let Some(nodes) = settings.nodes {
         overrides.push(format!("entities.suspension.Tethers.nodes={nodes}"));
     }

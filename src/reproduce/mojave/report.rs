@@ -29,8 +29,6 @@ gust, closed forms for massless tethers.
 const LEAST_PEAK: f64 = 0.05;
 /// Shorter flights do not tell the frequencies apart, s.
 const RESOLVED_S: f64 = 250.0;
-/// Until here the flights of the two formulations are compared, s.
-const COMPARED_S: f64 = 60.0;
 
 pub(super) fn report(settings: &MojaveSettings, found: &MojaveStudy) -> Report {
     let checks = checks(settings, found);
@@ -102,7 +100,9 @@ fn checks(settings: &MojaveSettings, found: &MojaveStudy) -> Vec<Check> {
         }
     }
     checks.extend(mirrored(found));
-    checks.extend(other_formulation(found));
+    if settings.duration_s > CALM_S {
+        checks.extend(other_formulation(found));
+    }
     checks
 }
 
@@ -184,21 +184,29 @@ fn mirrored(found: &MojaveStudy) -> Vec<Check> {
     checks
 }
 
-/// The turn in rigid links.
-fn other_formulation(found: &MojaveStudy) -> Option<Check> {
-    let links = &found.links;
-    let same = |result: &&OffsetResult| result.flown.offset_m == links.offset_m;
-    let lumped = &found.offsets.iter().find(same)?.flown;
-    let pairs = lumped.turn().into_iter().zip(links.turn());
-    let apart = pairs
-        .filter(|((time_s, _), _)| *time_s <= COMPARED_S)
-        .map(|((_, a), (_, b))| (a - b).abs());
-    let part = 100.0 * largest(apart) / size(&lumped.turn());
-    let what = format!(
-        "difference of the turn until {COMPARED_S} s in both formulations, offset {} m",
-        links.offset_m
-    );
-    Some(Check::of(what, "%", part).at_most(5.0, "the other formulation"))
+/// The turn in rigid links: the formulations must approach each other as 1/EA.
+fn other_formulation(found: &MojaveStudy) -> Vec<Check> {
+    let offset = number_text(found.links.offset_m);
+    let [first, .., last] = found.limit.as_slice() else {
+        return Vec::new();
+    };
+    let power = libm::log(first.1 / last.1) / libm::log(last.0 / first.0);
+    let (less, more) = (number_text(first.0), number_text(last.0));
+    let part = 100.0 * last.1 / last.2;
+    vec![
+        Check::of(
+            format!("power of 1/EA in which the turns of the formulations approach, EA x {less} to {more}, offset {offset} m"),
+            "",
+            power,
+        )
+        .against(1.0, Tolerance::Absolute(0.1), "first order in the stretch, which is as 1/EA,"),
+        Check::of(
+            format!("difference of the turn from inextensible links, EA x {more}, offset {offset} m"),
+            "%",
+            part,
+        )
+        .at_most(1.0, "the other formulation"),
+    ]
 }
 
 fn offset(result: &OffsetResult) -> String {
