@@ -141,9 +141,9 @@ fn the_pull_of_an_anchor_turns_the_momentum_of_a_conical_pendulum() {
         for frame in &results.frames {
             let expected = of(frame.time_s);
             let what = format!("{formulation}: momentum");
-            assert_below(&what, (momentum(frame) - expected).length(), 1e-6);
+            assert_below(&what, (momentum(frame) - expected).length(), 1e-9);
             let what = format!("{formulation}: impulse");
-            assert_below(&what, (impulse(frame) - expected + of(0.0)).length(), 1e-6);
+            assert_below(&what, (impulse(frame) - expected + of(0.0)).length(), 1e-9);
         }
     }
 }
@@ -235,7 +235,7 @@ fn a_winch_on_a_moving_anchor_keeps_the_balance() {
         let results = fly(&text, &[]);
         let largest = results.frames.iter().map(|frame| momentum(frame).length());
         let part = imbalance(&results) / largest.fold(0.0, f64::max);
-        assert_below(&format!("{formulation}: of momentum"), part, 1e-6);
+        assert_below(&format!("{formulation}: of momentum"), part, 1e-10);
     }
 }
 
@@ -275,8 +275,8 @@ fn docking_and_undocking_keep_the_balance() {
 #[test]
 fn the_comparison_case_keeps_the_balance_in_gusts() {
     for (formulation, integrator, tolerance) in [
-        ("LumpedMass", "Adaptive(relative_tolerance: 1e-9)", 1e-10),
-        ("Denoc", "Adaptive(relative_tolerance: 1e-9)", 1e-9),
+        ("LumpedMass", "Adaptive(relative_tolerance: 1e-9)", 1e-11),
+        ("Denoc", "Adaptive(relative_tolerance: 1e-9)", 1e-11),
         ("LumpedMass", "Implicit(accuracy_m: 1e-3)", 1e-4),
         ("LumpedMass", "Implicit(accuracy_m: 1e-5)", 1e-6),
     ] {
