@@ -26,6 +26,7 @@ use bevy_ecs::resource::Resource;
 use bevy_ecs::world::World;
 
 use super::channels::is_built_in;
+use super::winches::has_drive;
 use crate::plugin::{Plugin, Simulator};
 use crate::scene::checks::meant;
 use crate::scene::source::nearest;
@@ -52,6 +53,7 @@ impl Plugin for ActuatorsPlugin {
 /// Whether a scene has what this crate gives actuators to or commands them with.
 pub(crate) fn is_actuated(scene: &Scene) -> bool {
     scene.with::<Sail>().next().is_some()
+        || has_drive(scene)
         || scene.with::<Schedule>().next().is_some()
         || scene.with::<Controller>().next().is_some()
 }

@@ -22,6 +22,9 @@ use aerobot_systems::instruments::channel_log::{BuiltInChannels, ChannelLog};
 use aerobot_systems::instruments::energy::{
     KINETIC, MECHANICAL, POTENTIAL, WORK, WorkIntegral, energy, nonconservative_power,
 };
+use aerobot_systems::instruments::momentum::{
+    IMPULSE, ImpulseIntegral, MOMENTUM, momentum, outer_impulse,
+};
 use aerobot_systems::instruments::sail::{
     RUDDER, RUDDER_COMMAND, RUDDER_INCIDENCE, RUDDER_LIFT, SAIL_DRAG, WING_INCIDENCE, WING_LIFT,
     YAW_MOMENT, actuators, sail,
@@ -37,7 +40,7 @@ use bevy_ecs::world::World;
 use super::actuators::is_actuated;
 use super::recorder::Recorder;
 use super::torsion::has_torsion;
-use super::{docking, rotorcraft};
+use super::{docking, rotorcraft, winches};
 use crate::placement::attachment_position;
 use crate::plugin::{Plugin, Simulator};
 use crate::scene::source::nearest;
@@ -74,9 +77,21 @@ const TWISTED_WINCH_CHANNELS: [&str; 7] = [
     WINCH_WORK,
     LINE_OUT,
 ];
-const SYSTEM_CHANNELS: [&str; 4] = [KINETIC, POTENTIAL, MECHANICAL, WORK];
+const ENERGY_CHANNELS: [&str; 4] = [KINETIC, POTENTIAL, MECHANICAL, WORK];
+const SYSTEM_CHANNELS: [&str; 10] = [
+    KINETIC,
+    POTENTIAL,
+    MECHANICAL,
+    WORK,
+    MOMENTUM[0],
+    MOMENTUM[1],
+    MOMENTUM[2],
+    IMPULSE[0],
+    IMPULSE[1],
+    IMPULSE[2],
+];
 
-/// Airspeed, tilt, heading, swing, attachment tensions, twist and energy.
+/// Airspeed, tilt, heading, swing, attachment tensions, twist, energy and momentum.
 pub struct ChannelsPlugin;
 
 impl Plugin for ChannelsPlugin {
@@ -85,6 +100,7 @@ impl Plugin for ChannelsPlugin {
             .add_check(check_names)
             .add_setup(set_up)
             .add_systems_if(Phase::Dynamics, records_energy, || nonconservative_power)
+            .add_systems_if(Phase::Dynamics, records_momentum, || outer_impulse)
             .add_systems(Phase::Observe, || {
                 // One system after the other, but one to ask whether it is due.
                 accelerate_attachments
@@ -102,6 +118,9 @@ impl Plugin for ChannelsPlugin {
             .add_systems_for::<Winch, _, _>(Phase::Observe, || winch.run_if(channels_due))
             .add_systems_if(Phase::Observe, records_energy, || {
                 energy.run_if(channels_due)
+            })
+            .add_systems_if(Phase::Observe, records_momentum, || {
+                momentum.run_if(channels_due)
             });
     }
 }
@@ -109,6 +128,12 @@ impl Plugin for ChannelsPlugin {
 /// The channels that exist on an entity of a scene.
 fn known_channels(entity: &SceneEntity) -> Vec<&'static str> {
     let mut known = own_channels(entity).to_vec();
+    if entity
+        .get::<Winch>()
+        .is_some_and(|winch| winch.drive.is_some())
+    {
+        known.extend(winches::DRUM_CHANNELS);
+    }
     if entity.has::<Rotorcraft>() {
         known.extend(rotorcraft::CHANNELS);
     }
@@ -139,9 +164,20 @@ fn own_channels(entity: &SceneEntity) -> &'static [&'static str] {
     }
 }
 
-/// Whether any channel of the whole system is recorded.
+/// Whether energy or work of the whole system is recorded.
 fn records_energy(scene: &Scene) -> bool {
-    !wanted(&scene.run.record.channels, "system", &SYSTEM_CHANNELS).is_empty()
+    !wanted(&scene.run.record.channels, "system", &ENERGY_CHANNELS).is_empty()
+}
+
+/// Whether its momentum, or the impulse on it, is recorded.
+fn records_momentum(scene: &Scene) -> bool {
+    (0..3).any(|axis| !momentum_wanted(scene, axis).is_empty())
+}
+
+/// The channels of momentum and impulse along an axis that are recorded.
+fn momentum_wanted(scene: &Scene, axis: usize) -> BTreeSet<&'static str> {
+    let known = [MOMENTUM[axis], IMPULSE[axis]];
+    wanted(&scene.run.record.channels, "system", &known)
 }
 
 /// Whether built-in channels are due at the time of the accepted state.
@@ -202,16 +238,24 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
             .filter(|name| turns || (*name != TILT && *name != HEADING));
         spawned.insert(BuiltInChannels(channels.collect()));
     }
-    let system = wanted(&scene.run.record.channels, "system", &SYSTEM_CHANNELS);
-    if !system.is_empty() {
+    // What is integrated follows from the motion and does not steer it.
+    let integral = FirstOrderState {
+        value: 0.0,
+        rate_per_s: 0.0,
+        error_scale: f64::INFINITY,
+    };
+    let energy = wanted(&scene.run.record.channels, "system", &ENERGY_CHANNELS);
+    if !energy.is_empty() {
         let order = next_spawn_order(world);
-        let work = FirstOrderState {
-            value: 0.0,
-            rate_per_s: 0.0,
-            // The work follows from the motion and does not steer it.
-            error_scale: f64::INFINITY,
-        };
-        world.spawn((order, WorkIntegral, work, BuiltInChannels(system)));
+        world.spawn((order, WorkIntegral, integral, BuiltInChannels(energy)));
+    }
+    for axis in 0..3 {
+        let momentum = momentum_wanted(scene, axis);
+        if !momentum.is_empty() {
+            let order = next_spawn_order(world);
+            let channels = BuiltInChannels(momentum);
+            world.spawn((order, ImpulseIntegral(axis), integral, channels));
+        }
     }
     Ok(())
 }
@@ -309,6 +353,7 @@ pub(crate) fn is_built_in(channel: &str) -> bool {
         &TWISTED_TETHER_CHANNELS,
         &WINCH_CHANNELS,
         &SYSTEM_CHANNELS,
+        &winches::DRUM_CHANNELS,
         &rotorcraft::CHANNELS,
         &docking::LATCH_CHANNELS,
         &docking::GUIDANCE_CHANNELS,

@@ -1,7 +1,7 @@
 //! Winches: what pays tethers out and reels them in.
 
 use aerobot_components::actuator::ActuatorChannels;
-use aerobot_components::control::{Commands, Schedule};
+use aerobot_components::control::{ActuatorName, Commands, Controller, Schedule};
 use aerobot_components::run::Formulation;
 use aerobot_components::scene_component::FieldReport;
 use aerobot_components::state::{Acceleration, FirstOrderState, Force, Mass, Position, Velocity};
@@ -55,7 +55,7 @@ impl Plugin for WinchPowerPlugin {
 }
 
 /// Whether a controller or a schedule may turn a drum.
-fn has_drive(scene: &Scene) -> bool {
+pub(super) fn has_drive(scene: &Scene) -> bool {
     scene
         .with::<Winch>()
         .any(|(_, winch)| winch.drive.is_some())
@@ -98,14 +98,25 @@ fn check(scene: &Scene, report: &mut FieldReport) {
     }
 }
 
-/// The rate of a drum is held from one command to the next.
+/// A drum that is commanded has a drive, and its rate is held from one command to the next.
 fn check_commands(scene: &Scene, report: &mut FieldReport) {
+    let schedules = scene
+        .with::<Schedule>()
+        .map(|(entity, schedule)| (entity.path::<Schedule>(), &schedule.actuator));
+    let controllers = scene
+        .with::<Controller>()
+        .map(|(entity, controller)| (entity.path::<Controller>(), &controller.actuator));
+    for (path, actuator) in schedules.chain(controllers) {
+        if drum(scene, actuator).is_some_and(|winch| winch.drive.is_none()) {
+            report.add(
+                &format!("{path}.actuator.1"),
+                format!("the winch of `{}` has no drive", actuator.0),
+                "give it one: `Winch: (drive: (limit: largest rate in m/s), ..)`",
+            );
+        }
+    }
     for (entity, schedule) in scene.with::<Schedule>() {
-        let (owner, name) = &schedule.actuator;
-        let is_drum = name == DRUM_NAME
-            && scene
-                .entity(owner)
-                .is_some_and(|owner| owner.has::<Winch>());
+        let is_drum = drum(scene, &schedule.actuator).is_some();
         if is_drum && matches!(schedule.commands, Commands::Ramps(_)) {
             report.add(
                 &format!("{}.commands", entity.path::<Schedule>()),
@@ -114,6 +125,12 @@ fn check_commands(scene: &Scene, report: &mut FieldReport) {
             );
         }
     }
+}
+
+/// The winch whose drum an actuator is.
+fn drum<'a>(scene: &'a Scene, (owner, name): &ActuatorName) -> Option<&'a Winch> {
+    let owner = scene.entity(owner).filter(|_| name == DRUM_NAME)?;
+    owner.get::<Winch>()
 }
 
 fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
@@ -133,18 +150,17 @@ fn set_up(world: &mut World, scene: &Scene) -> Result<(), SetupError> {
         };
         let name = (entity.name.as_str(), DRUM_NAME);
         let start = scheduled_start(scene, &entity.name, DRUM_NAME);
-        if let Some(actuator) = add_actuator(world, name, limits, DRUM_CHANNELS, start) {
+        let [value, command] = DRUM_CHANNELS;
+        let channels = ActuatorChannels { value, command };
+        if let Some(actuator) = add_actuator(world, name, limits, channels, start) {
             world.entity_mut(line).insert(Drive::by(actuator));
         }
     }
     Ok(())
 }
 
-/// Channels of a drum with a drive.
-const DRUM_CHANNELS: ActuatorChannels = ActuatorChannels {
-    value: "reel_rate_m_s",
-    command: "reel_rate_command_m_s",
-};
+/// Channels of a drum with a drive: its rate and what it is commanded.
+pub(super) const DRUM_CHANNELS: [&str; 2] = ["reel_rate_m_s", "reel_rate_command_m_s"];
 
 /// Puts a winch at its end of a tether; the line that it pays out.
 fn mount(

@@ -93,6 +93,7 @@ pub fn unit_symbol(unit: &str) -> String {
         "rad_s2" => "rad/s2",
         "kg_m3" => "kg/m3",
         "kg_m2" => "kg m2",
+        "kg_m_s" => "kg m/s",
         "per_s" => "1/s",
         _ => unit,
     };
@@ -153,6 +154,8 @@ mod tests {
             ("vx_m_s", "m_s"),
             ("torsion_n_m", "n_m"),
             ("density_kg_m3", "kg_m3"),
+            ("momentum_x_kg_m_s", "kg_m_s"),
+            ("impulse_x_n_s", "n_s"),
             ("qw", ""),
             ("x_m", "m"),
         ] {

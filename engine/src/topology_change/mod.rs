@@ -2,7 +2,8 @@
 //! starts from a world that is put together anew.
 //!
 //! What a change takes from or gives to the mechanical energy is added to the work of non-conservative
-//! forces, so that energy less work goes on without a step.
+//! forces, so that energy less work goes on without a step; and what it does to the momentum to the impulse of outer
+//! forces, where there are anchors: without them nothing outside can have done it.
 
 mod cutting;
 mod dividing;
@@ -17,11 +18,13 @@ use aerobot_systems::clock::Clock;
 use aerobot_systems::dynamics::first_order::FirstOrderIndex;
 use aerobot_systems::fault::Fault;
 use aerobot_systems::instruments::energy::{WorkIntegral, mechanical_energy_j};
+use aerobot_systems::instruments::momentum::{ImpulseIntegral, momentum_beside_anchors};
 use aerobot_systems::integration::StepFailure;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::query::With;
 use bevy_ecs::system::RunSystemOnce;
 use bevy_ecs::world::World;
+use glam::DVec3;
 
 use crate::evaluation::{Integration, with_integration};
 use crate::restructure::{evaluate, restructure};
@@ -46,7 +49,7 @@ pub(crate) fn apply(world: &mut World, changes: &[Change]) -> bool {
         if integration.failure.is_some() {
             return false;
         }
-        let before_j = energy_j(world);
+        let before = (energy_j(world), momentum_kg_m_s(world));
         for change in changes {
             match change {
                 Change::Event(action) => act(world, action),
@@ -57,7 +60,8 @@ pub(crate) fn apply(world: &mut World, changes: &[Change]) -> bool {
         }
         match go_on(world, integration) {
             Ok(()) => {
-                account(world, integration, before_j);
+                account_for_work(world, integration, before.0);
+                account_for_impulse(world, integration, before.1);
                 true
             }
             Err(failure) => {
@@ -106,7 +110,7 @@ fn energy_j(world: &mut World) -> Option<f64> {
 }
 
 /// Counts what a change has done to the energy as work.
-fn account(world: &mut World, integration: &mut Integration, before_j: Option<f64>) {
+fn account_for_work(world: &mut World, integration: &mut Integration, before_j: Option<f64>) {
     let (Some(before_j), Some(after_j)) = (before_j, energy_j(world)) else {
         return;
     };
@@ -116,6 +120,27 @@ fn account(world: &mut World, integration: &mut Integration, before_j: Option<f6
         work.value += after_j - before_j;
         let first = 2 * integration.state.layout().coordinates;
         integration.trajectory.state[first + index.0] = work.value;
+    }
+}
+
+/// Momentum of the state that was evaluated last, kg m/s; nothing where no one asks for it, and where nothing outside
+/// can change it at once.
+fn momentum_kg_m_s(world: &mut World) -> Option<DVec3> {
+    let mut impulses = world.query_filtered::<(), With<ImpulseIntegral>>();
+    impulses.iter(world).next()?;
+    world.run_system_once(momentum_beside_anchors).ok()?
+}
+
+/// Counts what a change has done to the momentum as impulse of anchors.
+fn account_for_impulse(world: &mut World, integration: &mut Integration, before: Option<DVec3>) {
+    let (Some(before), Some(after)) = (before, momentum_kg_m_s(world)) else {
+        return;
+    };
+    let first = 2 * integration.state.layout().coordinates;
+    let mut impulses = world.query::<(&ImpulseIntegral, &FirstOrderIndex, &mut FirstOrderState)>();
+    for (axis, index, mut impulse) in impulses.iter_mut(world) {
+        impulse.value += after[axis.0] - before[axis.0];
+        integration.trajectory.state[first + index.0] = impulse.value;
     }
 }
 

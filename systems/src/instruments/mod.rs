@@ -7,6 +7,7 @@ pub mod channel_log;
 pub mod energy;
 pub mod energy_guard;
 pub mod energy_sum;
+pub mod momentum;
 pub mod sail;
 pub mod swing;
 pub mod twist;
