@@ -1,4 +1,4 @@
-//! What a campaign costs: `cargo bench --bench campaigns` prints the table that the README shows.
+//! What a campaign costs: `cargo bench --bench campaigns` prints the table that docs/cost.md shows.
 //!
 //! 1000 runs of 100 s of `scenes/gust_response.ron` (gusts resolved at 0.1 s, 1 cm asked) as
 //! `scenes/campaigns/gusts_1000.ron` has them, on one worker and on every core, in turn, five times each; release

@@ -1,4 +1,4 @@
-//! What a step costs: `cargo bench` prints the table that the README shows.
+//! What a step costs: `cargo bench` prints the table that docs/cost.md shows.
 //!
 //! One core, release build. Every figure is the least of several repeats in one run, as the least is
 //! what the code takes when nothing else disturbs it.

@@ -1,6 +1,6 @@
 //! What a simulated second of stiff tethers costs: `cargo bench --bench stiff_tethers`.
 //!
-//! The 1 km line of the README's comparison with MoorDyn (a 4 kg sphere on 0.237 kg of line in a wind of
+//! The 1 km line of the comparison with MoorDyn in docs/cost.md (a 4 kg sphere on 0.237 kg of line in a wind of
 //! 5 m/s, let go from a slant) at seven numbers of nodes, its stiffer sister, and the paper's cases. One
 //! core, release build, CPU time of the run with its recording; the least of five repeats, cases
 //! interleaved. The error is the largest distance of a body from a run a thousand times more accurate, at

@@ -6,8 +6,8 @@ The case: a 1 km line (EA 11.5 kN, 0.237 g/m, 0.458 mm) fixed at its top, a
 1 kg/m3 moving uniformly with (4, 3, 0) m/s; at rest at first, straight,
 tilted by 0.3 rad towards +x.
 
-    python3 moordyn_line.py                  both, and the README's table
-    python3 moordyn_line.py --moordyn-only   MoorDyn alone, README untouched
+    python3 moordyn_line.py                  both, and the table of docs/cost.md
+    python3 moordyn_line.py --moordyn-only   MoorDyn alone, docs/cost.md untouched
     python3 moordyn_line.py --ours-only F    our lines from the file F, no MoorDyn run
     python3 moordyn_line.py --find-steps     MoorDyn's largest stable steps again
 
@@ -364,7 +364,7 @@ def main():
     p.add_argument("--segments", type=lambda s: [int(x) for x in s.split(",")], default=SEGMENTS,
                    metavar="N,N,...", help="MoorDyn's numbers of segments (default: %(default)s)")
     p.add_argument("--repeats", type=int, default=5, help="least of so many (default: 5)")
-    p.add_argument("--moordyn-only", action="store_true", help="MoorDyn alone; the README is not touched")
+    p.add_argument("--moordyn-only", action="store_true", help="MoorDyn alone; docs/cost.md is not touched")
     p.add_argument("--ours-only", metavar="FILE", help="read our 'peer,' lines from FILE; MoorDyn is not run")
     p.add_argument("--moordyn-from", metavar="FILE", help="read 'moordyn,' lines of an earlier run from FILE; MoorDyn is not run")
     p.add_argument("--find-steps", action="store_true", help="find MoorDyn's largest stable steps again (minutes), and use them")
@@ -375,7 +375,7 @@ def main():
     p.add_argument("--venv", type=Path, default=Path(tempfile.gettempdir()) / f"moordyn-peer-{MOORDYN_VERSION}",
                    help="folder of the virtual environment (default: %(default)s)")
     p.add_argument("--root", type=Path, default=ROOT, help="repository root (default: %(default)s)")
-    p.add_argument("--readme", type=Path, help="file with the markers (default: README.md in the root)")
+    p.add_argument("--readme", type=Path, help="file with the markers (default: docs/cost.md)")
     p.add_argument("--no-readme", action="store_true", help="print the table, write nothing")
     p.add_argument("--worker", help=argparse.SUPPRESS)
     o = p.parse_args()
@@ -389,7 +389,7 @@ def main():
         raise PeerError("--moordyn-only goes with neither --ours-only nor --moordyn-from")
     if o.still and not o.moordyn_only:
         raise PeerError("--still goes with --moordyn-only: it is not the same case")
-    readme = o.readme or o.root / "README.md"
+    readme = o.readme or o.root / "docs" / "cost.md"
     use_moordyn = not (o.ours_only or o.moordyn_from)
     if use_moordyn:
         ensure_environment(o.venv)

@@ -6,8 +6,8 @@ a fixed point, 10 kg at the tip, gravity 8.87 m/s2; every rod within 0.3 rad of 
 vertical, turning at up to 0.1 rad/s. What is compared is nanoseconds per joint of
 one computation of all accelerations.
 
-    python3 pinocchio_chain.py                    both, and the README's table
-    python3 pinocchio_chain.py --pinocchio-only   Pinocchio alone, README untouched
+    python3 pinocchio_chain.py                    both, and the table of docs/cost.md
+    python3 pinocchio_chain.py --pinocchio-only   Pinocchio alone, docs/cost.md untouched
     python3 pinocchio_chain.py --ours-only F      our lines from the file F, no Pinocchio run
 
 Needed: Python's standard library with venv, and a C++ compiler. The script makes a
@@ -169,7 +169,7 @@ def main():
     p.add_argument("--links", type=sizes, default=LINKS, metavar="N,N,...",
                    help="Pinocchio's numbers of links (default: %(default)s)")
     p.add_argument("--repeats", type=int, default=5, help="least of so many (default: 5)")
-    p.add_argument("--pinocchio-only", action="store_true", help="Pinocchio alone; the README is not touched")
+    p.add_argument("--pinocchio-only", action="store_true", help="Pinocchio alone; docs/cost.md is not touched")
     p.add_argument("--ours-only", metavar="FILE", help="read our 'link,' lines from FILE; Pinocchio is not run")
     p.add_argument("--pinocchio-from", metavar="FILE",
                    help="read 'pinocchio,' lines of an earlier run from FILE; Pinocchio is not run")
@@ -181,7 +181,7 @@ def main():
     p.add_argument("--folder", type=Path, default=Path(tempfile.gettempdir()) / f"pinocchio-peer-{PINOCCHIO_VERSION}",
                    help="folder of the virtual environment and the compiled program (default: %(default)s)")
     p.add_argument("--root", type=Path, default=ROOT, help="repository root (default: %(default)s)")
-    p.add_argument("--readme", type=Path, help="file with the markers (default: README.md in the root)")
+    p.add_argument("--readme", type=Path, help="file with the markers (default: docs/cost.md)")
     p.add_argument("--no-readme", action="store_true", help="print the table, write nothing")
     o = p.parse_args()
 
@@ -214,7 +214,7 @@ def main():
     text = table(theirs, ours)
     print(text)
     if not (o.pinocchio_only or o.no_readme):
-        readme = o.readme or o.root / "README.md"
+        readme = o.readme or o.root / "docs" / "cost.md"
         write_readme(readme, text)
         print(f"# table written to {readme}", file=sys.stderr)
 
