@@ -94,8 +94,8 @@ fn percentiles_and_means_of_an_even_sample() {
         (found.y[4], to[4])
     };
     assert_eq!(envelope.series[0].x, [0.0, 0.5, 1.0, 1.5, 2.0]);
-    assert!(close(last("5 to 95 %").0, 1.0) && close(last("5 to 95 %").1, 19.0));
-    assert!(close(last("25 to 75 %").0, 5.0) && close(last("25 to 75 %").1, 15.0));
+    assert!(close(last("5 to 95 % (light)").0, 1.0) && close(last("5 to 95 % (light)").1, 19.0));
+    assert!(close(last("25 to 75 % (dark)").0, 5.0) && close(last("25 to 75 % (dark)").1, 15.0));
     assert!(close(last("median").0, 10.0));
     let histogram = &draw(&record, CampaignFigure::Histogram).panels[0];
     assert_eq!(series(histogram, "runs")[0].y.iter().sum::<f64>(), 101.0);
