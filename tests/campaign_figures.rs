@@ -110,9 +110,9 @@ fn percentiles_and_means_of_an_even_sample() {
     // Larger and larger: the mean of the first n is (n - 1) / 10.
     let convergence = &draw(&record, CampaignFigure::Convergence).panels[0];
     let mean = series(convergence, "mean")[0];
-    let rows = mean.x.iter().zip(&mean.y);
+    let mut rows = mean.x.iter().zip(&mean.y);
     assert!(rows.clone().all(|(n, mean)| close(*mean, (n - 1.0) / 10.0)));
-    let (n, mean) = rows.last().unwrap();
+    let (n, mean) = rows.next_back().unwrap();
     assert_eq!(*n, 101.0);
     assert!(close(*mean, record.summary.metrics[0].mean.unwrap()));
     // What is in step has the rank correlation 1; y does not vary.
