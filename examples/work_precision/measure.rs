@@ -40,7 +40,7 @@ pub(crate) fn study(case: &Case) -> Vec<Row> {
     let tolerance = case.reference_tolerance;
     let exact = format!("Adaptive(relative_tolerance: {tolerance:?})");
     let reference = record(&simulator, case, &exact);
-    let outcome = reference.summary.outcome;
+    let outcome = &reference.summary.outcome;
     assert_eq!(outcome, "done", "{:?}", reference.summary.stopped);
     eprintln!("{}: reference in {:.1} s", case.name, reference.cpu_s);
     let stable_step_s = reference.summary.stable_step_s.expect("there are tethers");

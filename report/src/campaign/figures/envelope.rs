@@ -41,12 +41,11 @@ fn panel(envelope: &Envelope, unit: &str) -> Panel {
         series(name, low).with_mark(Mark::Band { to: high.to_vec() })
     };
     Panel {
-        title: envelope.name.clone(),
         x: Axis::time(),
         y: Axis::new(axis_label(&envelope.name, unit)),
         series: vec![
-            band("5 to 95 %", p5, p95),
-            band("25 to 75 %", p25, p75),
+            band("5 to 95 % (light)", p5, p95),
+            band("25 to 75 % (dark)", p25, p75),
             series("median", p50),
         ],
         ..Panel::default()

@@ -129,7 +129,11 @@ fn panel(metric: &str, what: &str, fields: Vec<&str>, bars: &[Bars]) -> Option<P
                 .with_mark(mark)
                 .with_tone(tone),
         );
-        series.push(Series::line("95 % interval", intervals).with_tone(bars.len()));
+        series.push(
+            Series::line("95 % interval", intervals)
+                .with_mark(Mark::LineAndPoints)
+                .with_tone(bars.len()),
+        );
     }
     Some(Panel {
         title: metric.to_owned(),
