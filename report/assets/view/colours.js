@@ -10,7 +10,7 @@ const NOT_TO_SCALE = rgb('9a9a9a');
 
 const ROLES = {
   balloon: { colour: rgb('e0a030'), name: 'balloon' },
-  body: { colour: rgb('56687a'), name: 'body' },
+  body: { colour: rgb('6d8296'), name: 'body' },
   sail: { colour: rgb('2f6fb5'), name: 'sail' },
   drone: { colour: rgb('c2502f'), name: 'drone' },
   anchor: { colour: rgb('3a3a3a'), name: 'anchor' },

@@ -54,7 +54,10 @@ class Overlay {
       }
     }
     wanted.sort((a, b) => Number(b.isFirst) - Number(a.isFirst));
-    const taken = wanted.map(({ at }) => box(at.x - 6, at.y - 6, 12, 12));
+    const taken = wanted.map(({ at, radius }) => {
+      const half = clamp(0.6 * radius, 6, 60);
+      return box(at.x - half, at.y - half, 2 * half, 2 * half);
+    });
     if (options.labels) for (const want of wanted) this.placeName(want, taken, camera.size);
     for (const { element, at } of this.names.values()) {
       element.style.visibility = at ? 'visible' : 'hidden';

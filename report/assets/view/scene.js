@@ -19,13 +19,13 @@ class Scene {
   }
 
   /** Draws the states of the runs that are shown. */
-  draw(drawing, camera, ratio, states, { options, cage, trailOf, time_s }) {
+  draw(drawing, camera, ratio, states, { options, cage, origin_m, trailOf, time_s }) {
     this.behind.clear();
     this.there.clear();
     this.front.clear();
     this.camera = camera;
     drawing.begin(camera, ratio);
-    if (options.grid) addGrid(this.behind, cage, camera);
+    if (options.grid) addGrid(this.behind, cage, camera, origin_m);
     const clear = [];
     for (const state of states) {
       this.addTethers(state);

@@ -30,8 +30,10 @@ pub(super) fn modes(simulator: &Simulator, record: &Record) -> Result<Figure, St
         return nothing("no mode oscillates");
     }
     let place = |mode: &aerobot_engine::modes::Mode| (mode.frequency_hz(), mode.damping_ratio());
-    let (stable, unstable): (Vec<_>, Vec<_>) =
-        oscillating.iter().copied().partition(|mode| !mode.is_unstable());
+    let (stable, unstable): (Vec<_>, Vec<_>) = oscillating
+        .iter()
+        .copied()
+        .partition(|mode| !mode.is_unstable());
     let series = [("decays", stable), ("grows", unstable)]
         .into_iter()
         .enumerate();
