@@ -1,5 +1,5 @@
 //! Writes a page of which one knows how it looks: `yawed_page PAGE`. A long bar lies along y, since it is
-//! yawed by a right angle, and rises; a line that is cut half way through the run joins it to a ball.
+//! yawed by a right angle, from 1 m behind its place to 7 m before it, and rises; a line that is cut half way through the run joins it to a ball.
 
 use std::error::Error;
 use std::f64::consts::FRAC_PI_2;
@@ -24,11 +24,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let ball = Solid::Sphere { radius_m: 1.0 };
     let yaw = DQuat::from_rotation_z(FRAC_PI_2);
-    let body = |name: &str, solid, role, attitude, offset_m: DVec3| BodyMotion {
+    let body = |name: &str, solid, at_m, role, attitude, offset_m: DVec3| BodyMotion {
         name: name.into(),
         parts: vec![Part {
             solid,
-            at_m: [0.0; 3],
+            at_m,
             role,
             to_scale: true,
         }],
@@ -39,8 +39,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let tension = |time_s: &f64| vec![(*time_s < 5.0).then_some(100.0 + 10.0 * time_s)];
     let animation = Animation {
         bodies: vec![
-            body("bar", bar, Role::Body, yaw, DVec3::ZERO),
-            body("ball </script>", ball, Role::Balloon, DQuat::IDENTITY, LINE),
+            body("bar", bar, [3.0, 0.0, 0.0], Role::Body, yaw, DVec3::ZERO),
+            body(
+                "ball </script>",
+                ball,
+                [0.0; 3],
+                Role::Balloon,
+                DQuat::IDENTITY,
+                LINE,
+            ),
         ],
         tethers: vec![TetherMotion {
             name: "line".into(),

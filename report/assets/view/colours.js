@@ -19,7 +19,7 @@ const ROLES = {
 /** Rings about bodies, by run. */
 const RUNS = [rgb('1b1b1b'), rgb('c23b22'), rgb('2f6fb5'), rgb('3f8f5f')];
 
-const WIND = rgb('1f7fb0');
+const WIND = rgb('b8307f');
 const AXES = [rgb('c8332b'), rgb('2e8b3d'), rgb('2b55c8')];
 
 function rgb(text) {

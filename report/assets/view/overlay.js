@@ -2,7 +2,7 @@
 
 const SVG = 'http://www.w3.org/2000/svg';
 /** Where a name may stand from its body, in pixels: the first that is free is taken. */
-const BESIDE = [[10, -9], [10, 6], [10, -24], [-10, -9], [-10, 6], [-10, -24], [10, 21], [-10, 21]];
+const BESIDE = [[9, -23], [-9, -23], [9, 5], [-9, 5], [11, -9], [-11, -9], [9, -42], [-9, -42], [9, 24], [-9, 24]];
 const NAME_HEIGHT = 18;
 
 class Overlay {
@@ -81,7 +81,7 @@ class Overlay {
         return;
       }
     }
-    if (isFirst) entry.at = { x: at.x + 10, y: at.y - 9 };
+    if (isFirst) entry.at = { x: at.x + 9, y: at.y - 23 };
   }
 
   placeTicks(ticks) {

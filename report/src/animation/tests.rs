@@ -63,7 +63,7 @@ fn an_attachment_turns_with_its_body() {
                 density_kg_m3: 0, axial_stiffness_n: 1e4, damping_n_s_m: 1, start: Straight,
             )),
         },
-        run: (duration_s: 2, output_every_s: 0.25, integrator: Rk4(step_s: 0.01)),
+        run: (duration_s: 2, output_every_s: 0.25, integrator: Fixed(step_s: 0.01)),
     )"#,
     );
     let body = animation.bodies.iter().find(|body| body.name == "body");
