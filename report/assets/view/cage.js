@@ -6,23 +6,33 @@ const EDGE = rgb('8d959c');
 const GRID_PIXELS = 75;
 const AXIS_NAMES = ['x, downwind [m]', 'y, left [m]', 'z, altitude [m]'];
 
-/** The box of the grid: what is looked at, as far as it is in the picture, to whole steps of the grid. */
-function cageOf(camera, { centre_m, half_m }, origin_m) {
+/** The box of the grid: what is looked at, as far as it is in the picture. */
+function cageOf(camera, { centre_m, half_m }) {
   const step = niceAbove(GRID_PIXELS / camera.pixelsPerMetre());
-  const seen_m = 0.38 * camera.height_m;
+  const seen_m = 0.4 * camera.height_m;
   const low = [];
   const high = [];
   for (let k = 0; k < 3; k += 1) {
     let from = Math.max(centre_m[k] - half_m[k], camera.target_m[k] - seen_m);
     let to = Math.min(centre_m[k] + half_m[k], camera.target_m[k] + seen_m);
-    if (to - from < step) {
-      const middle = from <= to ? 0.5 * (from + to) : camera.target_m[k];
-      [from, to] = [middle - 0.5 * step, middle + 0.5 * step];
-    }
-    low.push(Math.floor((from + origin_m[k]) / step + 1e-3) * step - origin_m[k]);
-    high.push(Math.ceil((to + origin_m[k]) / step - 1e-3) * step - origin_m[k]);
+    if (to <= from) [from, to] = [camera.target_m[k] - seen_m, camera.target_m[k] + seen_m];
+    low.push(from);
+    high.push(to);
   }
   return { low, high, step };
+}
+
+/** All of the box, whether it is in the picture or not. */
+function cageAbout(camera, centre_m, half_m) {
+  const step = niceAbove(GRID_PIXELS / camera.pixelsPerMetre());
+  return { low: minus(centre_m, half_m), high: plus(centre_m, half_m), step };
+}
+
+/** The multiples of the step of the grid along an axis, from the origin of the runs, m. */
+function marksOf(axis, { low, high, step }, origin_m) {
+  const from = Math.ceil((low[axis] + origin_m[axis]) / step - 1e-6);
+  const to = Math.floor((high[axis] + origin_m[axis]) / step + 1e-6);
+  return Array.from({ length: Math.max(to - from + 1, 0) }, (_, index) => (from + index) * step - origin_m[axis]);
 }
 
 function cornersOf({ low, high }) {
@@ -40,25 +50,25 @@ function wallsOf({ low, high }, camera) {
 }
 
 /** Gathers the lines of the grid. */
-function addGrid(lines, cage, camera) {
+function addGrid(lines, cage, camera, origin_m) {
   const walls = wallsOf(cage, camera);
-  const { low, high, step } = cage;
+  const { low, high } = cage;
   const relative = (point) => minus(point, camera.target_m);
   for (let wall = 0; wall < 3; wall += 1) {
     for (const along of [0, 1, 2]) {
       if (along === wall) continue;
       const other = 3 - wall - along;
-      const count = Math.round((high[other] - low[other]) / step);
-      for (let index = 0; index <= count; index += 1) {
+      const draw = (mark, colour, opacity) => {
         const from = [0, 0, 0];
         from[wall] = walls[wall];
-        from[other] = low[other] + index * step;
+        from[other] = mark;
         from[along] = low[along];
         const to = [...from];
         to[along] = high[along];
-        const isEdge = index === 0 || index === count;
-        lines.add(relative(from), relative(to), isEdge ? EDGE : GRID, isEdge ? 0.7 : 1, 1);
-      }
+        lines.add(relative(from), relative(to), colour, opacity, 1);
+      };
+      for (const mark of marksOf(other, cage, origin_m)) draw(mark, GRID, 1);
+      for (const side of [low, high]) draw(side[other], EDGE, 0.7);
     }
   }
 }
@@ -78,7 +88,7 @@ function edgeOf(axis, cage, camera) {
   }
   const ends = [low, high].map((side) => corner.map((value, k) => (k === axis ? side[k] : value)));
   const [a, b] = ends.map((end) => camera.project(end));
-  if (!a || !b || Math.hypot(a.x - b.x, a.y - b.y) < 45) return undefined;
+  if (!a || !b || Math.hypot(a.x - b.x, a.y - b.y) < 30) return undefined;
   return { ends, a, b };
 }
 
@@ -92,22 +102,30 @@ function ticksOf(cage, camera, origin_m) {
     if (!edge) continue;
     const { a, b, ends } = edge;
     const outward = outwardOf(a, b, middle);
-    const count = Math.round((cage.high[axis] - cage.low[axis]) / cage.step);
-    const room = Math.abs(outward[0]) > 0.7 ? 18 : 58;
-    const apart = Math.hypot(a.x - b.x, a.y - b.y) / count;
-    const every = Math.max(1, Math.ceil(room / apart));
-    for (let index = 0; index <= count; index += every) {
-      const point = [...ends[0]];
-      point[axis] = cage.low[axis] + index * cage.step;
-      const at = camera.project(point);
-      if (at) texts.push(tick(decimals(point[axis] + origin_m[axis], cage.step), at, outward, 8));
+    for (const mark of marksOf(axis, cage, origin_m)) {
+      const at = camera.project(ends[0].map((value, k) => (k === axis ? mark : value)));
+      if (at) addApart(texts, tick(decimals(mark + origin_m[axis], cage.step), at, outward, 8));
     }
-    const centre = { x: 0.5 * (a.x + b.x), y: 0.5 * (a.y + b.y) };
-    const digits = decimals(cage.high[axis] + origin_m[axis], cage.step).length;
-    const past = Math.abs(outward[0]) * (7 * digits + 16) + Math.abs(outward[1]) * 26;
-    texts.push({ ...tick(AXIS_NAMES[axis], centre, outward, past), isName: true });
+    texts.push({ ...nameOf(axis, edge, outward), isName: true });
   }
   return texts;
+}
+
+/** The name of an axis: above the upright one, beyond the numbers of the others. */
+function nameOf(axis, { a, b }, outward) {
+  const isUpright = axis === 2 && Math.abs(outward[0]) > 0.7;
+  if (isUpright) return { text: AXIS_NAMES[axis], x: b.x, y: Math.min(a.y, b.y) - 2, align: -100, vertical: -100 };
+  const centre = { x: 0.5 * (a.x + b.x), y: 0.5 * (a.y + b.y) };
+  return tick(AXIS_NAMES[axis], centre, outward, Math.abs(outward[0]) * 48 + Math.abs(outward[1]) * 26);
+}
+
+/** Adds a text where it covers none that is there. */
+function addApart(texts, added) {
+  const boxOf = ({ text, x, y, align, vertical }) => {
+    const width = 7 * text.length + 6;
+    return box(x + 0.01 * align * width, y + 0.14 * vertical, width, 14);
+  };
+  if (!texts.some((other) => overlap(boxOf(other), boxOf(added)))) texts.push(added);
 }
 
 /** The unit vector of the picture from the middle across an edge. */

@@ -10,7 +10,7 @@ const NOT_TO_SCALE = rgb('9a9a9a');
 
 const ROLES = {
   balloon: { colour: rgb('e0a030'), name: 'balloon' },
-  body: { colour: rgb('56687a'), name: 'body' },
+  body: { colour: rgb('6d8296'), name: 'body' },
   sail: { colour: rgb('2f6fb5'), name: 'sail' },
   drone: { colour: rgb('c2502f'), name: 'drone' },
   anchor: { colour: rgb('3a3a3a'), name: 'anchor' },
@@ -19,7 +19,7 @@ const ROLES = {
 /** Rings about bodies, by run. */
 const RUNS = [rgb('1b1b1b'), rgb('c23b22'), rgb('2f6fb5'), rgb('3f8f5f')];
 
-const WIND = rgb('1f7fb0');
+const WIND = rgb('b8307f');
 const AXES = [rgb('c8332b'), rgb('2e8b3d'), rgb('2b55c8')];
 
 function rgb(text) {

@@ -98,7 +98,7 @@ class Drawing {
     gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
     gl.bufferData(gl.ARRAY_BUFFER, lines.numbers.subarray(0, lines.count * LINE_NUMBERS), gl.DYNAMIC_DRAW);
     gl.disable(gl.CULL_FACE);
-    gl.depthMask(order === 'there');
+    gl.depthMask(false);
     if (order !== 'there') gl.disable(gl.DEPTH_TEST);
     gl.bindVertexArray(this.lineArrays);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, lines.count);

@@ -1,8 +1,11 @@
 // What is looked at: the whole of it, everything as it moves along, or a body; and how large that is.
 
 /** Half of what is seen about a body, in its radii, and at least in metres. */
-const ABOUT_A_BODY = 4;
+const ABOUT_A_BODY = 2.6;
 const LEAST_HALF_M = 1.5;
+/** A cage is at least this part of its longest edge wide, and so much larger than what is in it. */
+const LEAST_WIDTH = 0.25;
+const MARGIN = 1.04;
 
 /** The smallest box about points; empty at first. */
 class Extent {
@@ -56,14 +59,19 @@ function looksOf(runs) {
     }
   }
   const looks = [
-    { key: 'whole', name: 'whole', half_m: whole.half(), centre: () => whole.centre() },
-    { key: 'moving', name: 'whole, moving along', half_m: moving_m, centre: centreOfAll },
+    { key: 'whole', name: 'whole', half_m: roomy(whole.half()), centre: () => whole.centre() },
+    { key: 'moving', name: 'whole, moving along', half_m: roomy(moving_m), centre: centreOfAll },
   ];
   const names = new Set(runs.flatMap((run) => run.bodies.map((body) => body.name)));
   for (const name of names) looks.push(bodyLook(runs, name));
   // Where the system leaves its own place by far, one sees more of it from a camera that goes with it.
   const travels = Math.max(...whole.half()) > 2.5 * Math.max(...moving_m);
   return { looks, first: looks[travels ? 1 : 0] };
+}
+
+function roomy(half_m) {
+  const most_m = Math.max(...half_m, 0.1);
+  return half_m.map((half) => MARGIN * Math.max(half, LEAST_WIDTH * most_m));
 }
 
 function bodyLook(runs, name) {
@@ -94,20 +102,16 @@ function centreOfAll(states) {
 }
 
 /** Sets how much a camera sees, so that a cage of half this size about its target is in the picture. */
-function fit(camera, half_m, origin_m) {
-  camera.height_m = 4 * Math.max(...half_m, 0.1);
-  for (let round = 0; round < 4; round += 1) {
-    const cage = cageOf(camera, { centre_m: camera.target_m, half_m }, origin_m);
-    const { right, up } = camera.axes();
-    let [across, along] = [0, 0];
-    for (const corner of cornersOf(cage)) {
-      const at = minus(corner, camera.target_m);
-      across = Math.max(across, Math.abs(dot(right, at)));
-      along = Math.max(along, Math.abs(dot(up, at)));
-    }
-    // Room for names of axes, in pixels, about the cage.
-    const [width, height] = camera.size.map((pixels) => Math.max(pixels - 150, 0.4 * pixels));
-    camera.height_m = 2 * camera.size[1] * Math.max(along / height, across / width);
-    if (camera.isPerspective) camera.height_m *= 1.15;
+function fit(camera, half_m) {
+  const { right, up } = camera.axes();
+  let [across_m, along_m] = [0, 0];
+  for (const corner of cornersOf({ low: half_m.map((half) => -half), high: half_m })) {
+    across_m = Math.max(across_m, Math.abs(dot(right, corner)));
+    along_m = Math.max(along_m, Math.abs(dot(up, corner)));
   }
+  // Room for numbers and names of axes about the cage, in pixels.
+  const width = Math.max(camera.size[0] - 170, 0.4 * camera.size[0]);
+  const height = Math.max(camera.size[1] - 110, 0.4 * camera.size[1]);
+  camera.height_m = 2 * camera.size[1] * Math.max(along_m / height, across_m / width);
+  if (camera.isPerspective) camera.height_m *= 1.15;
 }

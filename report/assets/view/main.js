@@ -153,12 +153,12 @@ class View {
     const states = this.states();
     const centre_m = look.centre(states);
     camera.target_m = plus(centre_m, this.pan_m);
-    if (this.isFitted) fit(camera, look.half_m, this.origin_m);
-    const cage = cageOf(camera, { centre_m, half_m: look.half_m }, this.origin_m);
+    if (this.isFitted) fit(camera, look.half_m);
+    const cage = this.isFitted ? cageAbout(camera, centre_m, look.half_m) : cageOf(camera, { centre_m, half_m: look.half_m });
     camera.reach_m = 2 * length(this.looks[0].half_m) + 2 * length(minus(camera.target_m, this.looks[0].centre(states)))
       + 2 * camera.height_m;
-    const context = { options, cage, trailOf: look.body, time_s: this.player.time_s, origin_m: this.origin_m,
-      lookedAt: look.body };
+    const context = { options, cage, trailOf: look.body, time_s: this.player.time_s,
+      origin_m: this.origin_m, lookedAt: look.body };
     this.scene.draw(this.drawing, camera, ratio, states, context);
     this.overlay.place(camera, states, context);
     this.pictures += 1;

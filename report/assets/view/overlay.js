@@ -2,7 +2,7 @@
 
 const SVG = 'http://www.w3.org/2000/svg';
 /** Where a name may stand from its body, in pixels: the first that is free is taken. */
-const BESIDE = [[10, -9], [10, 6], [10, -24], [-10, -9], [-10, 6], [-10, -24], [10, 21], [-10, 21]];
+const BESIDE = [[9, -23], [-9, -23], [9, 5], [-9, 5], [11, -9], [-11, -9], [9, -42], [-9, -42], [9, 24], [-9, 24]];
 const NAME_HEIGHT = 18;
 
 class Overlay {
@@ -54,7 +54,10 @@ class Overlay {
       }
     }
     wanted.sort((a, b) => Number(b.isFirst) - Number(a.isFirst));
-    const taken = wanted.map(({ at }) => box(at.x - 6, at.y - 6, 12, 12));
+    const taken = wanted.map(({ at, radius }) => {
+      const half = clamp(0.6 * radius, 6, 60);
+      return box(at.x - half, at.y - half, 2 * half, 2 * half);
+    });
     if (options.labels) for (const want of wanted) this.placeName(want, taken, camera.size);
     for (const { element, at } of this.names.values()) {
       element.style.visibility = at ? 'visible' : 'hidden';
@@ -78,7 +81,7 @@ class Overlay {
         return;
       }
     }
-    if (isFirst) entry.at = { x: at.x + 10, y: at.y - 9 };
+    if (isFirst) entry.at = { x: at.x + 9, y: at.y - 23 };
   }
 
   placeTicks(ticks) {

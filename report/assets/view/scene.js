@@ -19,23 +19,26 @@ class Scene {
   }
 
   /** Draws the states of the runs that are shown. */
-  draw(drawing, camera, ratio, states, { options, cage, trailOf, time_s }) {
+  draw(drawing, camera, ratio, states, { options, cage, origin_m, trailOf, time_s }) {
     this.behind.clear();
     this.there.clear();
     this.front.clear();
     this.camera = camera;
     drawing.begin(camera, ratio);
-    if (options.grid) addGrid(this.behind, cage, camera);
-    const clear = [];
+    if (options.grid) addGrid(this.behind, cage, camera, origin_m);
+    const solids = [];
     for (const state of states) {
       this.addTethers(state);
       if (options.trails) this.addTrails(state, trailOf, time_s);
-      for (const body of state.bodies) this.addBody(drawing, state, body, options, clear);
+    }
+    // The first run lies over the others.
+    for (const state of [...states].reverse()) {
+      for (const body of state.bodies) this.addBody(state, body, options, solids);
     }
     drawing.lines(this.behind, 'behind');
-    for (const solid of clear.filter((it) => it.opacity === 1)) drawing.solid(solid);
+    for (const solid of solids.filter((it) => it.opacity === 1)) drawing.solid(solid);
     drawing.lines(this.there, 'there');
-    for (const solid of clear.filter((it) => it.opacity < 1)) drawing.solid(solid);
+    for (const solid of solids.filter((it) => it.opacity < 1)) drawing.solid(solid);
     drawing.lines(this.front, 'front');
   }
 
@@ -74,7 +77,7 @@ class Scene {
     }
   }
 
-  addBody(drawing, { run }, state, options, solids) {
+  addBody({ run }, state, options, solids) {
     const { body, position_m, attitude } = state;
     const at = this.camera.project(position_m);
     if (!at) return;
@@ -85,8 +88,9 @@ class Scene {
     }
     if (radius < SMALL_PIXELS) {
       const colour = ROLES[body.parts[0].role].colour;
-      this.front.add(centre, centre, RUNS[run.index % RUNS.length], 0.9, RING_PIXELS);
-      this.front.add(centre, centre, [1, 1, 1], 1, RING_PIXELS - 3);
+      const ring = RING_PIXELS + (run.index === 0 ? 0 : 5);
+      this.front.add(centre, centre, RUNS[run.index % RUNS.length], 0.9, ring);
+      this.front.add(centre, centre, [1, 1, 1], 1, ring - 3);
       this.front.add(centre, centre, colour, run.index === 0 ? 1 : 0.6, RING_PIXELS - 6);
     } else if (options.axes) {
       const reach_m = body.radius_m + 14 / at.scale;

@@ -28,11 +28,11 @@ in vec2 quarter;
 out vec4 shown;
 void main() {
   vec3 outward = normalize(facing);
-  float light = 0.5 + 0.2 * outward.z + 0.35 * max(dot(outward, to_eye), 0.0);
+  float light = 0.62 + 0.18 * outward.z + 0.3 * max(dot(outward, to_eye), 0.0);
   if (quartered && quarter.x * quarter.y > 0.0) light *= 0.86;
   vec3 own = colour.rgb;
   if (hatched && mod(gl_FragCoord.x + gl_FragCoord.y, 8.0) < 3.0) own = mix(own, vec3(1.0), 0.7);
-  shown = vec4(own * min(light, 1.0), colour.a);
+  shown = vec4(min(own * light, 1.0), colour.a);
 }`;
 
 // Lines as wide as said in pixels, with round ends: a quad on the screen for each, its ends brought before

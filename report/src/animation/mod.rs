@@ -4,6 +4,8 @@
 
 pub mod appearance;
 mod frames;
+#[cfg(test)]
+mod tests;
 mod tethers;
 mod winds;
 

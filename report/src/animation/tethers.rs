@@ -1,6 +1,7 @@
 //! The points of tethers, frame by frame: attachments on bodies that turn, and nodes.
 
-use aerobot_components::tether::Tether;
+use aerobot_components::tether::{Tether, TetherSide};
+use aerobot_components::winch::Winch;
 use aerobot_engine::geometry::TetherEndPlace;
 use glam::DVec3;
 
@@ -26,7 +27,12 @@ fn motion(
     track: &TetherTrack,
 ) -> Option<TetherMotion> {
     let [from, to] = record.geometry.tether_ends.get(&track.name)?;
-    let tether = record.scene.entity(&track.name)?.get::<Tether>()?;
+    let entity = record.scene.entity(&track.name)?;
+    let tether = entity.get::<Tether>()?;
+    let numbered_from_end = entity
+        .get::<Winch>()
+        .is_some_and(|winch| winch.end == TetherSide::From);
+    let cuts = Cut::of(record, track);
     let count = track.segments.len();
     let nodes: Vec<Option<&StateTrack>> = (1..=count)
         .map(|number| record.tables.state(&format!("{}/{number}", track.name)))
@@ -36,9 +42,13 @@ fn motion(
     for (frame, time_s) in times_s.iter().enumerate() {
         let mut points = vec![end_m(bodies, from, frame)?];
         let mut tensions = Vec::with_capacity(count);
+        let number_now = |cut: &Cut| cut.number_at(track, *time_s, numbered_from_end);
+        let cut_now: Vec<usize> = cuts.iter().filter_map(number_now).collect();
         for (index, segment) in track.segments.iter().enumerate() {
             let node = nodes[index].and_then(|node| node.position_at_m(*time_s));
-            let tension = segment.tension_at_n(*time_s);
+            let tension = segment
+                .tension_at_n(*time_s)
+                .filter(|_| !cut_now.contains(&(index + 1)));
             tensions.push(tension);
             points.push(match (node, tension) {
                 (Some(node), _) => node,
@@ -55,6 +65,55 @@ fn motion(
         points_m,
         tensions_n,
     })
+}
+
+/// A segment that was cut. It stays in the tables, without tension, between ends that part.
+struct Cut {
+    time_s: f64,
+    /// Its number from 1, as the event tells it.
+    number: usize,
+    /// Segments beyond it then.
+    beyond: usize,
+}
+
+impl Cut {
+    /// What was cut of a tether.
+    fn of(record: &Record, track: &TetherTrack) -> Vec<Self> {
+        let events = record.summary.events.iter();
+        events
+            .filter(|event| event.kind == "cut")
+            .filter_map(|event| {
+                let number = event.entity.strip_prefix(&track.name)?.strip_prefix('/')?;
+                let number: usize = number.parse().ok()?;
+                Some(Self {
+                    time_s: event.time_s,
+                    number,
+                    beyond: segments_at(track, event.time_s).saturating_sub(number),
+                })
+            })
+            .collect()
+    }
+
+    /// Its number at a time (s); nothing before it is cut. A winch at `from` numbers the line anew as it
+    /// turns: what is beyond the segment stays. (One that divides its line between the cut and the record
+    /// before makes this wrong by one.)
+    fn number_at(&self, track: &TetherTrack, time_s: f64, from_end: bool) -> Option<usize> {
+        if time_s < self.time_s {
+            return None;
+        }
+        if !from_end {
+            return Some(self.number);
+        }
+        segments_at(track, time_s).checked_sub(self.beyond)
+    }
+}
+
+/// How many segments a tether has at a time (s).
+fn segments_at(track: &TetherTrack, time_s: f64) -> usize {
+    let there = track.segments.iter();
+    there
+        .filter(|segment| segment.tension_at_n(time_s).is_some())
+        .count()
 }
 
 /// Place of an attachment in a frame, inertial, m.

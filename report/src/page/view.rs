@@ -108,3 +108,49 @@ fn floats(numbers: impl Iterator<Item = f64>) -> String {
         .collect();
     STANDARD.encode(bytes)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn one_body(name: &str, position_m: DVec3) -> Animation {
+        Animation {
+            times_s: vec![0.0],
+            bodies: vec![BodyMotion {
+                name: name.into(),
+                parts: Vec::new(),
+                positions_m: vec![position_m],
+                attitudes: vec![glam::DQuat::IDENTITY],
+                wind_m_s: vec![DVec3::ZERO],
+            }],
+            ..Animation::default()
+        }
+    }
+
+    #[test]
+    fn a_name_cannot_end_the_data() {
+        let animation = one_body("</script><!--<img src=x>", DVec3::ZERO);
+        let written = view(&[("<script>", &animation)]);
+        assert_eq!(written.matches("</script").count(), 1);
+        assert!(!written.contains("<img") && !written.contains("<!--"));
+        assert!(!SCRIPT.contains("</script") && !STYLE.contains("</style"));
+    }
+
+    #[test]
+    fn lengths_are_read_back_from_the_origin() {
+        let place_m = DVec3::new(72_000.123, -3.25, 56_000.777);
+        let written = view(&[("run", &one_body("body", place_m))]);
+        let text = written.split("class=\"view-data\">").nth(1);
+        let text = text.and_then(|text| text.split("</script>").next());
+        let data: Value = serde_json::from_str(text.unwrap_or_default()).unwrap_or_default();
+        let array = data["runs"][0]["bodies"][0]["positions_m"].as_str();
+        let bytes = STANDARD.decode(array.unwrap_or_default());
+        let bytes = bytes.unwrap_or_default();
+        assert_eq!(bytes.len(), 12);
+        for (k, number) in bytes.chunks(4).enumerate() {
+            let number = f32::from_le_bytes([number[0], number[1], number[2], number[3]]);
+            let origin_m = data["origin_m"][k].as_f64().unwrap_or(f64::NAN);
+            assert!((f64::from(number) + origin_m - place_m[k]).abs() < 1e-6);
+        }
+    }
+}

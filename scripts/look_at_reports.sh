@@ -1,0 +1,38 @@
+#!/bin/sh
+# Runs some scenes, writes a page for each, tests the pages in Chromium with the network cut, and takes pictures
+# of them to look at. Needs Node 20, `npm ci` in tests/browser, and Chromium ($CHROMIUM, or on the path).
+#
+#     scripts/look_at_reports.sh FOLDER [SCENE...]
+#
+# writes FOLDER/runs, FOLDER/pages and FOLDER/pictures. AEROBOT is the program, `target/release/aerobot` if not
+# said. Without scenes: those that show something of every kind.
+set -eu
+
+if [ $# -lt 1 ]; then
+    echo "usage: $0 FOLDER [SCENE...]" >&2
+    exit 2
+fi
+mkdir -p "$1"
+folder=$(cd "$1" && pwd)
+shift
+cd "$(dirname "$0")/.."
+aerobot=${AEROBOT:-target/release/aerobot}
+if [ $# -eq 0 ]; then
+    set -- scenes/paper/comparison_900m.ron scenes/paper/multi_tether_yaw.ron scenes/paper/towing_9700m.ron \
+        scenes/paper/flight_chain.ron scenes/mav_dock.ron scenes/paper/sail_trajectory.ron \
+        scenes/examples/reel_and_release.ron
+fi
+
+cargo build --quiet -p aerobot-report --examples
+mkdir -p "$folder/runs" "$folder/pages" "$folder/pictures"
+for scene in "$@"; do
+    name=$(basename "$scene" .ron)
+    "$aerobot" run "$scene" --out "$folder/runs/$name" --force --quiet
+    target/debug/examples/view_page "$folder/pages/$name.html" "$folder/runs/$name"
+done
+target/debug/examples/yawed_page "$folder/known.html"
+
+cd tests/browser
+[ -d node_modules ] || npm ci
+REPORTS="$folder/pages" KNOWN="$folder/known.html" node --test
+node screenshots.js "$folder/pages" "$folder/pictures"
