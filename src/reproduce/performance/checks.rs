@@ -40,12 +40,12 @@ pub(super) fn checks(
         steps(by_elements, Study::Elements, LUMPED_EXPLICIT, true).against(
             2.0,
             Tolerance::Absolute(0.1),
-            "the stable step of damped segments, as 1/n^2,",
+            "the stable step of damped segments, as 1/n^2",
         ),
         steps(by_elements, Study::Elements, LINKS_EXPLICIT, true).against(
             1.0,
             Tolerance::Absolute(0.25),
-            "the fastest transverse vibration, as n,",
+            "the fastest transverse vibration, as n",
         ),
     ];
     for solver in [LUMPED_IMPLICIT, LINKS_IMPLICIT] {
@@ -60,7 +60,7 @@ pub(super) fn checks(
             .against(
                 -1.0,
                 Tolerance::Absolute(0.1),
-                "the stable step of damped segments, as L,",
+                "the stable step of damped segments, as L",
             ),
     );
     let runs = costs.by_elements.iter().chain(&costs.by_length);
@@ -71,7 +71,7 @@ pub(super) fn checks(
             "m",
             apart_m,
         )
-        .at_most(0.05, "the other integrator"),
+        .vanishes(0.05, "the other integrator"),
     );
     let links = of(Study::Length, LINKS_EXPLICIT, Quantity::Steps, false);
     checks.push(
