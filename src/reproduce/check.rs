@@ -228,12 +228,16 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// The verdict of checks.
+    /// The verdict of checks; without any it says that there is nothing to judge.
     #[must_use]
     pub fn of(checks: &[Check], sentence: impl Into<String>) -> Self {
         Self {
             holds: !checks.iter().any(Check::fails),
-            sentence: sentence.into(),
+            sentence: if checks.is_empty() {
+                "With these settings there is too little to judge.".to_owned()
+            } else {
+                sentence.into()
+            },
         }
     }
 }
