@@ -187,12 +187,12 @@ fn verdict(report: &Report) -> String {
         independent.clone().count(),
         independent.filter(|check| check.fails()).count(),
     );
-    let counted = match (all, failed) {
-        (0, _) => "nothing is checked with these settings.".to_owned(),
-        (_, 0) => format!("{all} checks against other answers hold."),
-        _ => format!("{failed} of {all} checks against other answers DO NOT HOLD."),
-    };
-    format!("{counted} {}", report.verdict.sentence)
+    let sentence = &report.verdict.sentence;
+    match (all, failed) {
+        (0, _) => sentence.clone(),
+        (_, 0) => format!("{all} checks against other answers hold. {sentence}"),
+        _ => format!("{failed} of {all} checks against other answers DO NOT HOLD. {sentence}"),
+    }
 }
 
 #[cfg(test)]

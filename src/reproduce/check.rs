@@ -162,6 +162,12 @@ impl Check {
         self
     }
 
+    /// Our number, a difference, must vanish but for a remainder.
+    #[must_use]
+    pub fn vanishes(self, within: f64, source: impl Into<String>) -> Self {
+        self.against(0.0, Tolerance::Absolute(within), source)
+    }
+
     /// Our answer must be as another says in words; whether it is, the caller knows.
     #[must_use]
     pub fn as_said(
@@ -203,10 +209,10 @@ impl Check {
 
 impl fmt::Display for Check {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{}: {} {}", self.what, self.ours, self.unit)?;
-        if let Some(independent) = &self.independent {
-            let Independent { answer, source } = independent;
-            write!(formatter, ", where {source} has {answer} {}", self.unit)?;
+        let number = |answer: &Answer| format!("{answer} {}", self.unit).trim_end().to_owned();
+        write!(formatter, "{}: {}", self.what, number(&self.ours))?;
+        if let Some(Independent { answer, source }) = &self.independent {
+            write!(formatter, "; {source}: {}", number(answer))?;
         }
         write!(formatter, "; asked for: {}", self.asked)
     }
@@ -222,12 +228,16 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// The verdict of checks.
+    /// The verdict of checks; without any it says that there is nothing to judge.
     #[must_use]
     pub fn of(checks: &[Check], sentence: impl Into<String>) -> Self {
         Self {
             holds: !checks.iter().any(Check::fails),
-            sentence: sentence.into(),
+            sentence: if checks.is_empty() {
+                "With these settings there is too little to judge.".to_owned()
+            } else {
+                sentence.into()
+            },
         }
     }
 }
@@ -259,6 +269,8 @@ mod tests {
         let part = |ours| number(ours).against(-50.0, Tolerance::Relative(0.01), "by hand");
         assert!(part(-50.4).holds && part(-50.6).fails() && part(50.0).fails());
         assert!(number(3.0).at_most(3.0, "by hand").holds);
+        assert!(number(1e-3).vanishes(1e-2, "by hand").holds);
+        assert!(number(-1.0).vanishes(1e-2, "by hand").fails());
         assert!(number(f64::NAN).at_most(3.0, "by hand").fails());
         assert!(
             Check::of("length", "m", "long")
@@ -282,7 +294,7 @@ mod tests {
         let wrong = number(1.25).against(2.0, Tolerance::Relative(0.01), "the closed form");
         assert_eq!(
             wrong.to_string(),
-            "length: 1.25 m, where the closed form has 2 m; asked for: within 1 %"
+            "length: 1.25 m; the closed form: 2 m; asked for: within 1 %"
         );
     }
 

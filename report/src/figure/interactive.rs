@@ -78,7 +78,7 @@ impl<'a> Drawing<'a> {
             }
             self.data.extend(traces(series, &suffix, is_new));
         }
-        let mut x = axis(&panel.x);
+        let mut x = axis(&panel.x, decades(panel, |series| &series.x));
         x.insert("anchor".into(), json!(format!("y{suffix}")));
         if panel.x.is_time {
             if let Some(first) = self.time_axes.first() {
@@ -89,7 +89,7 @@ impl<'a> Drawing<'a> {
         if next.is_some_and(|next| is_named_below(panel, next)) {
             x.remove("title");
         }
-        let mut y = axis(&panel.y);
+        let mut y = axis(&panel.y, decades(panel, |series| &series.y));
         y.insert("domain".into(), json!(domain));
         y.insert("anchor".into(), json!(format!("x{suffix}")));
         if panel.equal_axes {
@@ -126,13 +126,27 @@ fn height(panel: &Panel) -> f64 {
     }
 }
 
-fn axis(axis: &Axis) -> Map<String, Value> {
+/// How many decades the positive numbers of a panel span.
+fn decades(panel: &Panel, values: fn(&Series) -> &Vec<f64>) -> f64 {
+    let values = panel.series.iter().flat_map(values);
+    let positive = values.filter(|value| value.is_finite() && **value > 0.0);
+    let (low, high) = positive.fold((f64::MAX, f64::MIN_POSITIVE), |(low, high), value| {
+        (low.min(*value), high.max(*value))
+    });
+    libm::log10(high) - libm::log10(low)
+}
+
+fn axis(axis: &Axis, decades: f64) -> Map<String, Value> {
     let mut out = Map::new();
     out.insert("title".into(), json!({"text": axis.label, "standoff": 8}));
     match axis.scale {
         Scale::Log => {
             out.insert("type".into(), json!("log"));
             out.insert("exponentformat".into(), json!("power"));
+            if decades > 1.5 {
+                // One tick a decade, or fewer.
+                out.insert("dtick".into(), json!((decades / 8.0).ceil()));
+            }
         }
         // Metres, not kilometres by a `k` behind the number.
         Scale::Linear => {

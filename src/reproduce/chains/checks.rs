@@ -105,7 +105,7 @@ fn symmetry(result: &ChainResult) -> Vec<Check> {
             flight.formulation.name()
         );
         Check::of(what, "rad", turned.unwrap_or(f64::NAN))
-            .at_most(1e-9, "mirror symmetry, to round-off,")
+            .vanishes(1e-9, "mirror symmetry, to round-off")
     };
     result.flights().map(of).into()
 }
@@ -132,7 +132,7 @@ fn pair_modes(result: &ChainResult) -> Vec<Check> {
         .against(
             result.pair.swing_hz(),
             Tolerance::Relative(0.01),
-            "the closed form of a dumbbell, massless tethers,",
+            "the closed form of a dumbbell, massless tethers",
         ),
         Check::of(
             "multi-tether: yaw of the gondola against the balloon",
@@ -142,7 +142,7 @@ fn pair_modes(result: &ChainResult) -> Vec<Check> {
         .against(
             result.pair.yaw_hz(),
             Tolerance::Relative(0.01),
-            "the closed form of a multifilar pendulum, massless tethers,",
+            "the closed form of a multifilar pendulum, massless tethers",
         ),
     ]
 }
@@ -174,7 +174,7 @@ fn limit(result: &ChainResult) -> Vec<Check> {
                 Some(Check::of(what, "", power).against(
                     1.0,
                     Tolerance::Absolute(0.1),
-                    "first order in the stretch, which is as 1/EA,",
+                    "first order in the stretch, which is as 1/EA",
                 ))
             }
             _ => None,
@@ -188,7 +188,7 @@ fn limit(result: &ChainResult) -> Vec<Check> {
             "m",
             largest(apart),
         )
-        .at_most(0.1, "the other formulation, inextensible,"),
+        .vanishes(0.1, "the other formulation, inextensible"),
     );
     checks
 }

@@ -126,9 +126,9 @@ fn checks(found: &ComparisonStudy) -> Vec<Check> {
                 "{body} at 100 s from that of a separate program, {}",
                 reference.name
             );
-            checks.push(Check::of(what, "m", error_m).at_most(
+            checks.push(Check::of(what, "m", error_m).vanishes(
                 1e-5,
-                "a separate program (DOP853 at 1e-10, uniform density), to its last digits,",
+                "a separate program (DOP853 at 1e-10, uniform density), to its last digits",
             ));
         }
     }
@@ -182,7 +182,7 @@ fn at_rest(found: &ComparisonStudy) -> Vec<Check> {
                 "m",
                 largest(moved.map(|(_, moved)| moved.length())),
             )
-            .at_most(1e-6, "what floats at rest in still air and"),
+            .vanishes(1e-6, "rest of what floats in still air"),
         );
     }
     checks
@@ -210,7 +210,7 @@ fn limit_checks(found: &ComparisonStudy) -> Vec<Check> {
             Check::of(what, "", power(pair)).against(
                 1.0,
                 Tolerance::Absolute(0.1),
-                "first order in the stretch, which is as 1/EA,",
+                "first order in the stretch, which is as 1/EA",
             )
         })
         .collect();
@@ -219,7 +219,7 @@ fn limit_checks(found: &ComparisonStudy) -> Vec<Check> {
             "difference from inextensible links, EA x {}",
             number_text(*factor)
         );
-        decades.push(Check::of(what, "m", *last_m).at_most(1e-3, "the other formulation"));
+        decades.push(Check::of(what, "m", *last_m).vanishes(1e-3, "the other formulation"));
     }
     decades
 }
@@ -227,7 +227,7 @@ fn limit_checks(found: &ComparisonStudy) -> Vec<Check> {
 fn sentence(found: &ComparisonStudy) -> String {
     let stretch = match (found.limit.first(), found.limit.last()) {
         (Some((_, first_m)), Some((factor, last_m))) => format!(
-            " That is the stretch of the tether, and vanishes as 1/EA: with all masses on nodes {first_m:.2e} m at the \
+            " That comes of the stretch, and vanishes as 1/EA: with all masses on nodes {first_m:.3} m at the \
              scene's EA, {last_m:.1e} m at {} times that.",
             number_text(*factor)
         ),

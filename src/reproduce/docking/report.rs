@@ -164,15 +164,15 @@ fn of_impact(approach: &Approach, craft: &Craft) -> Vec<Check> {
             "m/s",
             impact.recorded_m_s,
         )
-        .at_most(craft.latch_m_s, "the latch"),
+        .at_most(craft.latch_m_s, "the limit of the latch"),
         Check::of(
             format!(
-                "horizontal momentum that drone and gondola lose as the latch closes, seed {seed}"
+                "horizontal momentum lost as the latch closes, over what drone and gondola exchange, seed {seed}"
             ),
-            "% of what they exchange",
+            "%",
             100.0 * impact.change_kg_m_s() / impact.exchanged_kg_m_s(craft),
         )
-        .at_most(1.0, "the conservation of momentum"),
+        .vanishes(1.0, "the conservation of momentum"),
     ]
 }
 

@@ -95,7 +95,7 @@ fn checks(settings: &MojaveSettings, found: &MojaveStudy) -> Vec<Check> {
             let what = "turn of a gondola on the axis";
             checks.push(
                 Check::of(what, "rad", size(&result.flown.turn()))
-                    .at_most(1e-9, "mirror symmetry, to round-off,"),
+                    .vanishes(1e-9, "mirror symmetry, to round-off"),
             );
         }
     }
@@ -116,12 +116,12 @@ fn of_modes(result: &OffsetResult) -> [Check; 2] {
         mode(Motion::X, "mode of the swing").against(
             result.pair.swing_hz(),
             Tolerance::Relative(0.005),
-            "the closed form of a dumbbell, massless tethers,",
+            "the closed form of a dumbbell, massless tethers",
         ),
         mode(Motion::Yaw, "mode of the turn").against(
             result.pair.yaw_hz(),
             Tolerance::Relative(0.005),
-            "the closed form of a multifilar pendulum off its axis, massless tethers,",
+            "the closed form of a multifilar pendulum off its axis, massless tethers",
         ),
     ]
 }
@@ -178,7 +178,7 @@ fn mirrored(found: &MojaveStudy) -> Vec<Check> {
             let sums = pairs.map(|((_, a), (_, b))| (a + b).abs());
             let part = 100.0 * largest(sums) / size(&own.turn());
             let what = format!("turns of offsets {} m to either side, added", own.offset_m);
-            checks.push(Check::of(what, "%", part).at_most(1e-3, "mirror symmetry"));
+            checks.push(Check::of(what, "%", part).vanishes(1e-3, "mirror symmetry"));
         }
     }
     checks
@@ -199,13 +199,13 @@ fn other_formulation(found: &MojaveStudy) -> Vec<Check> {
             "",
             power,
         )
-        .against(1.0, Tolerance::Absolute(0.1), "first order in the stretch, which is as 1/EA,"),
+        .against(1.0, Tolerance::Absolute(0.1), "first order in the stretch, which is as 1/EA"),
         Check::of(
             format!("difference of the turn from inextensible links, EA x {more}, offset {offset} m"),
             "%",
             part,
         )
-        .at_most(1.0, "the other formulation"),
+        .vanishes(1.0, "the other formulation"),
     ]
 }
 

@@ -26,43 +26,8 @@ pub(super) fn checks(
     if !why::are_enough(settings, exponents) {
         return Vec::new();
     }
-    let of = |study, solver: usize, quantity, many| {
-        let found = find(exponents, study, SOLVERS[solver], quantity, many);
-        found.map_or(f64::NAN, |found| found.exponent)
-    };
-    let steps = |what: &str, study, solver: usize, many| {
-        let what = format!("power of the steps, {what}, {}", SOLVERS[solver].name());
-        Check::of(what, "", of(study, solver, Quantity::Steps, many))
-    };
-    let by_elements = "40 elements or more";
-    let implicit = "no limit of stability";
-    let mut checks = vec![
-        steps(by_elements, Study::Elements, LUMPED_EXPLICIT, true).against(
-            2.0,
-            Tolerance::Absolute(0.1),
-            "the stable step of damped segments, as 1/n^2,",
-        ),
-        steps(by_elements, Study::Elements, LINKS_EXPLICIT, true).against(
-            1.0,
-            Tolerance::Absolute(0.25),
-            "the fastest transverse vibration, as n,",
-        ),
-    ];
-    for solver in [LUMPED_IMPLICIT, LINKS_IMPLICIT] {
-        let many = steps(by_elements, Study::Elements, solver, true);
-        checks.push(many.against(0.0, Tolerance::Absolute(0.1), implicit));
-        let length = steps("length", Study::Length, solver, false);
-        checks.push(length.against(0.0, Tolerance::Absolute(0.1), implicit));
-    }
-    checks.push(
-        steps("length", Study::Length, LUMPED_EXPLICIT, false)
-            .paper("strongly dependent")
-            .against(
-                -1.0,
-                Tolerance::Absolute(0.1),
-                "the stable step of damped segments, as L,",
-            ),
-    );
+    let mut checks = by_elements(exponents);
+    checks.extend(by_length(exponents));
     let runs = costs.by_elements.iter().chain(&costs.by_length);
     let apart_m = largest(runs.filter_map(|run| run.from_explicit_m));
     checks.push(
@@ -71,31 +36,86 @@ pub(super) fn checks(
             "m",
             apart_m,
         )
-        .at_most(0.05, "the other integrator"),
+        .vanishes(0.05, "the other integrator"),
     );
-    let links = of(Study::Length, LINKS_EXPLICIT, Quantity::Steps, false);
-    checks.push(
-        Check::of("power of the steps, length, DeNOC explicit", "", links)
-            .paper(0.0)
+    checks.extend(by_clock(exponents));
+    checks
+}
+
+/// The power in which a quantity of a solver grows.
+fn power(exponents: &[Exponent], study: Study, solver: usize, quantity: Quantity) -> (String, f64) {
+    let many = study == Study::Elements;
+    let found = find(exponents, study, SOLVERS[solver], quantity, many);
+    let range = if many { MANY } else { "by length" };
+    let words = match quantity {
+        Quantity::Cpu => "CPU time",
+        _ => "steps",
+    };
+    (
+        format!("power of the {words}, {range}, {}", SOLVERS[solver].name()),
+        found.map_or(f64::NAN, |found| found.exponent),
+    )
+}
+
+fn steps(exponents: &[Exponent], study: Study, solver: usize) -> Check {
+    let (what, power) = power(exponents, study, solver, Quantity::Steps);
+    Check::of(what, "", power)
+}
+
+const MANY: &str = "40 elements or more";
+const IMPLICIT: &str = "no limit of stability";
+
+fn by_elements(exponents: &[Exponent]) -> Vec<Check> {
+    let of = |solver| steps(exponents, Study::Elements, solver);
+    vec![
+        of(LUMPED_EXPLICIT).against(
+            2.0,
+            Tolerance::Absolute(0.1),
+            "the stable step of damped segments, as 1/n^2",
+        ),
+        of(LINKS_EXPLICIT).against(
+            1.0,
+            Tolerance::Absolute(0.25),
+            "the fastest transverse vibration, as n",
+        ),
+        of(LUMPED_IMPLICIT).against(0.0, Tolerance::Absolute(0.1), IMPLICIT),
+        of(LINKS_IMPLICIT).against(0.0, Tolerance::Absolute(0.1), IMPLICIT),
+    ]
+}
+
+fn by_length(exponents: &[Exponent]) -> Vec<Check> {
+    let of = |solver| steps(exponents, Study::Length, solver);
+    let (what, links) = power(exponents, Study::Length, LINKS_EXPLICIT, Quantity::Steps);
+    vec![
+        of(LUMPED_EXPLICIT).paper("strongly dependent").against(
+            -1.0,
+            Tolerance::Absolute(0.1),
+            "the stable step of damped segments, as L",
+        ),
+        of(LUMPED_IMPLICIT).against(0.0, Tolerance::Absolute(0.1), IMPLICIT),
+        of(LINKS_IMPLICIT).against(0.0, Tolerance::Absolute(0.1), IMPLICIT),
+        Check::of(what, "", links)
+            .paper("independent")
             .as_in_paper("within 0.1 of 0", links.abs() <= 0.1),
-    );
-    for (solver, power) in [
+    ]
+}
+
+fn by_clock(exponents: &[Exponent]) -> Vec<Check> {
+    let of = |(solver, paper): (usize, f64)| {
+        let (what, ours) = power(exponents, Study::Elements, solver, Quantity::Cpu);
+        Check::of(what, "", ours).paper(paper).as_in_paper(
+            format!("within 0.3 of {paper}"),
+            (ours - paper).abs() <= 0.3,
+        )
+    };
+    [
         (LUMPED_EXPLICIT, 3.0),
         (LUMPED_IMPLICIT, 3.0),
         (LINKS_EXPLICIT, 1.0),
         (LINKS_IMPLICIT, 1.0),
-    ] {
-        let ours = of(Study::Elements, solver, Quantity::Cpu, true);
-        let what = format!(
-            "power of the CPU time, {by_elements}, {}",
-            SOLVERS[solver].name()
-        );
-        checks.push(Check::of(what, "", ours).paper(power).as_in_paper(
-            format!("within 0.3 of {power}"),
-            (ours - power).abs() <= 0.3,
-        ));
-    }
-    checks
+    ]
+    .map(of)
+    .into()
 }
 
 /// Nothing that a clock says stands here, so that the sentence is the same on every machine.

@@ -42,6 +42,37 @@ feeds back velocities too.
 ";
 
 pub(super) fn report(found: &SailStudy) -> Report {
+    let stopped = found.flights.iter().filter_map(|(words, response)| {
+        let reason = response.stopped.as_ref()?;
+        Some(format!("sail: {words}: stopped: {reason}"))
+    });
+    let checks = checks::checks(found);
+    Report {
+        figures: Vec::new(),
+        title: TITLE.to_owned(),
+        paper_shows: PAPER_SHOWS.to_owned(),
+        verdict: Verdict::of(&checks, checks::sentence(found)),
+        checks,
+        stopped: stopped.collect(),
+        tables: vec![
+            Table {
+                file_name: "sail_trim.csv",
+                text: trims(found),
+            },
+            Table {
+                file_name: "sail_zonal_wind.csv",
+                text: profile(),
+            },
+            Table {
+                file_name: "sail_response.csv",
+                text: responses(found),
+            },
+        ],
+        text: text(found),
+    }
+}
+
+fn text(found: &SailStudy) -> String {
     let mut text = HEAD.to_owned();
     for (words, trim) in &found.trims {
         let least = trim
@@ -76,34 +107,7 @@ pub(super) fn report(found: &SailStudy) -> Report {
         ));
     }
     text.push_str(ENDING);
-    let stopped = found.flights.iter().filter_map(|(words, response)| {
-        let reason = response.stopped.as_ref()?;
-        Some(format!("sail: {words}: stopped: {reason}"))
-    });
-    let checks = checks::checks(found);
-    Report {
-        figures: Vec::new(),
-        title: TITLE.to_owned(),
-        paper_shows: PAPER_SHOWS.to_owned(),
-        verdict: Verdict::of(&checks, checks::sentence(found)),
-        checks,
-        stopped: stopped.collect(),
-        tables: vec![
-            Table {
-                file_name: "sail_trim.csv",
-                text: trims(found),
-            },
-            Table {
-                file_name: "sail_zonal_wind.csv",
-                text: profile(),
-            },
-            Table {
-                file_name: "sail_response.csv",
-                text: responses(found),
-            },
-        ],
-        text,
-    }
+    text
 }
 
 fn wind() -> String {

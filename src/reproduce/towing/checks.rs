@@ -50,7 +50,7 @@ pub(super) fn checks(settings: &TowingSettings, results: &[WindResult]) -> Vec<C
                     part,
                 )
                 .paper("\"differences due to the approaches\"")
-                .at_most(0.1, "the continuous cable"),
+                .vanishes(0.1, "the continuous cable"),
             );
         }
         if settings.duration_s >= SETTLED_S {
@@ -61,7 +61,7 @@ pub(super) fn checks(settings: &TowingSettings, results: &[WindResult]) -> Vec<C
                     result.unsettled_m(),
                 )
                 .paper("the dynamic one is \"more exact\"")
-                .at_most(0.01, "the static solution"),
+                .vanishes(0.01, "the static solution"),
             );
         }
     }
@@ -75,7 +75,7 @@ fn continuous(result: &WindResult) -> Vec<Check> {
             continue;
         }
         let cable = &result.continuous;
-        let source = "a separate program, to its last digits,";
+        let source = "a separate program, to its last digits";
         for (what, ours, expected) in [
             ("offset of the probe", cable.probe().x_m, x_m),
             ("depth of the probe", cable.depth_m(), depth_m),
@@ -106,8 +106,8 @@ pub(super) fn sentence(settings: &TowingSettings, results: &[WindResult]) -> Str
     }
     format!(
         "Static and dynamic model are one: the line at rest with {} nodes is within {error_m:.2} m of the continuous \
-         cable{flown}. With the same forces the static solution is where the dynamic one rests, so that neither is more exact, \
-         as the paper has it; the curves of its figure cannot be had again without the diameter, the shear and the air.",
+         cable{flown}. With the same forces the static solution is where the dynamic one rests: neither is the more exact, which \
+         the paper claims of the dynamic one. Its curves cannot be had again without the diameter, the shear and the air.",
         settings.nodes
     )
 }

@@ -11,7 +11,7 @@ pub(super) const PAPER_SHOWS: &str = "Figures 13 (the paper's simulator) and 14 
 and 50 m, which starts at 0.1 rad/s: period and amplitude grow with the length. Table 1 has 0.133, 0.066 and 0.066 Hz \
 for both programs. The text has the period grow because the rotation takes longer to travel along the tether.";
 
-const SOURCE: &str = "the closed form of the multifilar pendulum, massless tethers,";
+const SOURCE: &str = "the closed form of the multifilar pendulum, massless tethers";
 
 pub(super) fn checks(results: &[LengthResult]) -> Vec<Check> {
     results.iter().flat_map(of_length).collect()
@@ -72,9 +72,8 @@ pub(super) fn sentence(results: &[LengthResult]) -> String {
     let table = told(&|result| result.paper_hz.to_string());
     let wave = told(&|result| format!("{:.2}", result.wave_s));
     format!(
-        "As in the paper period and amplitude grow with the length; its frequencies ({table} Hz) are bins of a record of \
-         {PAPER_RECORD_S} s, and those of the 10 m do not come out with the moment of inertia of its hollow cylinder: the \
-         true ones are {closed} Hz, those of a multifilar pendulum. A wave passes the tethers in {wave} s, so that it is \
-         not what sets the period."
+        "As in the paper period and amplitude grow with the length. Its frequencies ({table} Hz) are bins of a record of \
+         {PAPER_RECORD_S} s, and the first of them does not come out with the moment of inertia of its hollow cylinder: those of \
+         a multifilar pendulum are {closed} Hz. A wave passes the tethers in {wave} s, so that it does not set the period."
     )
 }
