@@ -77,7 +77,7 @@ function rolesLegend(runs) {
   if (parts.some((part) => !part.to_scale)) {
     element.append(node('div', 'view-entry', node('span', 'view-swatch view-hatched'), 'not to scale'));
   }
-  element.append(node('div', 'view-entry', node('span', 'view-ring'), 'too small to see'));
+  if (parts.length > 0) element.append(node('div', 'view-entry', node('span', 'view-ring'), 'too small to see'));
   return element;
 }
 

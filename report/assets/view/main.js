@@ -32,10 +32,14 @@ class View {
   bindCanvas() {
     this.stage = this.section.querySelector('.view-stage');
     this.canvas = this.section.querySelector('.view-canvas');
+    if (this.runs.length === 0) {
+      this.say('Nothing was recorded that could be shown.');
+      return;
+    }
     this.drawing = Drawing.on(this.canvas);
     if (!this.drawing) {
-      this.stage.replaceChildren(node('p', 'view-none', 'The 3-D view needs WebGL2, which this browser does not have '
-        + 'or has turned off. Figures and numbers are complete without it.'));
+      this.say('The 3-D view needs WebGL2, which this browser does not have or has turned off. '
+        + 'Figures and numbers are complete without it.');
       return;
     }
     this.canvas.addEventListener('webglcontextlost', (event) => {
@@ -48,6 +52,11 @@ class View {
     });
     new ResizeObserver(() => this.redraw()).observe(this.stage);
     window.addEventListener('resize', () => this.redraw());
+  }
+
+  /** A sentence in place of the picture. */
+  say(sentence) {
+    this.stage.replaceChildren(node('p', 'view-none', sentence));
   }
 
   /** Sets what is shown. */
@@ -147,7 +156,7 @@ class View {
 
   draw() {
     const size = [this.stage?.clientWidth ?? 0, this.stage?.clientHeight ?? 0];
-    if (!this.drawing || !(size[0] > 0 && size[1] > 0) || this.runs.length === 0) return;
+    if (!this.drawing || !(size[0] > 0 && size[1] > 0)) return;
     const { camera, look, options } = this;
     const ratio = this.resize(size);
     const states = this.states();
