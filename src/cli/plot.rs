@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use aerobot_engine::plugin::Simulator;
 use aerobot_engine::scene::source::nearest;
 use aerobot_engine::trim::scene_file::check_target;
-use aerobot_report::campaign::{CampaignFigure, CampaignRecord};
+use aerobot_report::campaign::{CampaignFigure, CampaignRecord, SearchRecord};
 use aerobot_report::figure::Figure;
 use aerobot_report::figure::thinning::MOST_POINTS;
 use aerobot_report::record::Record;
@@ -36,6 +36,9 @@ pub(super) fn plot(simulator: &Simulator, arguments: &PlotArguments) -> ExitCode
     }
 }
 
+/// The figure of a design search, and what it shows.
+const SEARCH: (&str, &str) = ("search", "of a design search: the best value so far");
+
 /// Names of all kinds and what they show.
 fn kinds() -> Vec<(&'static str, &'static str)> {
     let campaigns = CampaignFigure::ALL.into_iter();
@@ -46,7 +49,10 @@ fn kinds() -> Vec<(&'static str, &'static str)> {
     let tables = table_figures::KINDS
         .iter()
         .map(|kind| (kind.name, kind.about));
-    runs.chain(campaigns).chain(tables).collect()
+    runs.chain(campaigns)
+        .chain([SEARCH])
+        .chain(tables)
+        .collect()
 }
 
 fn write(simulator: &Simulator, arguments: &PlotArguments) -> Result<PathBuf, String> {
@@ -91,6 +97,10 @@ fn figure(
     if let Ok(kind) = kind.parse::<CampaignFigure>() {
         let record = CampaignRecord::read(folder).map_err(|error| error.to_string())?;
         return record.figure(kind).map_err(nothing);
+    }
+    if kind == SEARCH.0 {
+        let record = SearchRecord::read(folder).map_err(|error| error.to_string())?;
+        return Ok(record.figure());
     }
     let Some(kind) = run_figures::RunFigureKind::of(kind) else {
         let near = nearest(kind, kinds().into_iter().map(|(name, _)| name));

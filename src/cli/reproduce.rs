@@ -213,13 +213,14 @@ mod tests {
             quiet: true,
             written: false,
             worst: ExitCode::SUCCESS,
+            finished: Vec::new(),
         };
         let finished = Finished {
             name: "case",
             report,
             wall_s: 0.0,
         };
-        assert!(told.take(&finished).is_ok());
+        assert!(told.take(finished).is_ok());
         (format!("{:?}", told.worst), words.contains("DO NOT HOLD"))
     }
 

@@ -79,9 +79,14 @@ pub(super) fn altitude(record: &Record) -> Result<Figure, String> {
 
 /// Yaw, pitch and roll, unwound.
 pub(super) fn attitude(record: &Record) -> Result<Figure, String> {
-    let bodies = moving(record);
+    let turns = |body: &StateTrack| {
+        let first = body.rotations[0].0;
+        body.rotations.iter().any(|(turn, _)| *turn != first)
+    };
+    let mut bodies = moving(record);
+    bodies.retain(|(_, body)| turns(body));
     if bodies.is_empty() {
-        return nothing("no body moves");
+        return nothing("no body turns");
     }
     let names = ["yaw", "pitch", "roll"];
     let panels = names.iter().enumerate().map(|(index, name)| Panel {
