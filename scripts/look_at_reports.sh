@@ -1,6 +1,6 @@
 #!/bin/sh
 # Runs some scenes, writes a page for each, tests the pages in Chromium with the network cut, and takes pictures
-# of them to look at. Needs Node 20, `npm ci` in tests/browser, and Chromium ($CHROMIUM, or on the path).
+# of them to look at; their glTF files go through the Khronos validator. Needs Node 20, `npm ci` in tests/browser, and Chromium ($CHROMIUM, or on the path).
 #
 #     scripts/look_at_reports.sh FOLDER [SCENE...]
 #
@@ -23,16 +23,17 @@ if [ $# -eq 0 ]; then
         scenes/examples/reel_and_release.ron
 fi
 
-cargo build --quiet -p aerobot-report --examples
 mkdir -p "$folder/runs" "$folder/pages" "$folder/pictures"
 for scene in "$@"; do
     name=$(basename "$scene" .ron)
-    "$aerobot" run "$scene" --out "$folder/runs/$name" --force --quiet
-    target/debug/examples/view_page "$folder/pages/$name.html" "$folder/runs/$name"
+    "$aerobot" run "$scene" --out "$folder/runs/$name" --set run.record.channels=All --report --force --quiet
+    cp "$folder/runs/$name/report.html" "$folder/pages/$name.html"
+    "$aerobot" export "$folder/runs/$name" --gltf "$folder/pages/$name.glb" --frames 300 --force --quiet
 done
-target/debug/examples/yawed_page "$folder/known.html"
+cargo run --quiet -p aerobot-report --example yawed_page "$folder/known.html"
 
 cd tests/browser
 [ -d node_modules ] || npm ci
 REPORTS="$folder/pages" KNOWN="$folder/known.html" node --test
+node validate_gltf.mjs "$folder/pages"
 node screenshots.js "$folder/pages" "$folder/pictures"

@@ -21,7 +21,7 @@
       if (/^[xy]axis/.test(key)) spec.layout[key] = { ...axis, ...spec.layout[key] };
     }
     Object.assign(spec.layout, style);
-    const chart = { figure, plot: figure.querySelector(".plot"), spec, drawn: false, cursors: [] };
+    const chart = { figure, plot: figure.querySelector(".plot"), spec, drawn: false, is_seen: false, cursors: [] };
     figure.chart = chart;
     return chart;
   }
@@ -94,9 +94,18 @@
     });
   }
 
+  // Of charts that nobody sees the cursor is placed when they are scrolled to.
   document.addEventListener("aerobot:time", (event) => {
     time_s = event.detail.time_s;
-    charts.forEach((chart) => { if (chart.cursors.length) placeCursors(chart); });
+    charts.forEach((chart) => { if (chart.is_seen && chart.cursors.length) placeCursors(chart); });
+  });
+
+  const eyes = new IntersectionObserver((entries) => {
+    entries.forEach((entry) => {
+      const { chart } = entry.target;
+      chart.is_seen = entry.isIntersecting;
+      if (chart.is_seen && chart.cursors.length) placeCursors(chart);
+    });
   });
 
   function start() {
@@ -107,7 +116,7 @@
         draw(entry.target.chart);
       });
     }, { rootMargin: "500px" });
-    charts.forEach((chart) => watcher.observe(chart.figure));
+    charts.forEach((chart) => { watcher.observe(chart.figure); eyes.observe(chart.figure); });
     window.addEventListener("beforeprint", () => charts.forEach(draw));
     // For scripts that look at a page: everything drawn, and what the time axes show.
     window.aerobotCharts = {
