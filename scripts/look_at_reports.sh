@@ -17,7 +17,9 @@ folder=$(cd "$1" && pwd)
 shift
 cd "$(dirname "$0")/.."
 aerobot=${AEROBOT:-target/release/aerobot}
+heavy=no
 if [ $# -eq 0 ]; then
+    heavy=yes
     set -- scenes/paper/comparison_900m.ron scenes/paper/multi_tether_yaw.ron scenes/paper/towing_9700m.ron \
         scenes/paper/flight_chain.ron scenes/mav_dock.ron scenes/paper/sail_trajectory.ron \
         scenes/examples/reel_and_release.ron
@@ -30,6 +32,13 @@ for scene in "$@"; do
     cp "$folder/runs/$name/report.html" "$folder/pages/$name.html"
     "$aerobot" export "$folder/runs/$name" --gltf "$folder/pages/$name.glb" --frames 300 --force --quiet
 done
+if [ $heavy = yes ]; then
+    # Sixty seconds of 200 nodes, 1500 frames: is it smooth, and how long is the file?
+    "$aerobot" run scenes/paper/comparison_900m.ron --out "$folder/runs/two_hundred_nodes" --until 60 --report --force \
+        --quiet --set entities.tether.Tether.nodes=200 --set run.output_every_s=0.04 --set 'run.integrator=Auto()'
+    cp "$folder/runs/two_hundred_nodes/report.html" "$folder/pages/two_hundred_nodes.html"
+    ls -l "$folder/pages/two_hundred_nodes.html"
+fi
 cargo run --quiet -p aerobot-report --example yawed_page "$folder/known.html"
 
 cd tests/browser

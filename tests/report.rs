@@ -106,12 +106,14 @@ fn tension_along_a_hanging_line_is_the_weight_below() {
     let gravity_m_s2 = 8.87;
     let radius_m: f64 = 0.001;
     let line_kg_m = 1440.0 * std::f64::consts::PI * radius_m * radius_m;
-    for (distance_m, tension_n) in line.x.iter().zip(&line.y) {
-        // To half a segment's stretch; buoyancy and drag of the line are not in the scene at rest.
-        let weight_n = gravity_m_s2 * (100.0 + line_kg_m * (900.0 - distance_m));
+    let segment_kg = line_kg_m * 900.0 / 11.0;
+    for (index, tension_n) in line.y.iter().enumerate() {
+        // Half a segment's mass is at either end of it.
+        let below_kg = 100.0 + segment_kg * (10.5 - index as f64);
+        let apart_n = (tension_n - gravity_m_s2 * below_kg).abs();
         assert!(
-            (tension_n - weight_n).abs() < 0.1,
-            "{distance_m} m: {tension_n} N, {weight_n} N"
+            apart_n < 1e-6,
+            "segment {index}: {tension_n} N, {apart_n} N off"
         );
     }
     assert_eq!(line.x.len(), 11);

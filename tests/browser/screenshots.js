@@ -5,15 +5,25 @@ import { mkdirSync, readdirSync } from 'node:fs';
 import { basename, join } from 'node:path';
 import { launch, open, settled } from './browser.js';
 
-const [reports, pictures] = process.argv.slice(2);
+// With a third argument, the name of a body, the view from close by looks at it.
+const [reports, pictures, body] = process.argv.slice(2);
 mkdirSync(pictures, { recursive: true });
 const browser = await launch();
 for (const file of readdirSync(reports).filter((name) => name.endsWith('.html')).sort()) {
   const name = basename(file, '.html');
   const { page, faults } = await open(browser, join(reports, file), { width: 1280, height: 860 });
   await settled(page);
-  const picture = (what) => page.screenshot({ path: join(pictures, `${name}-${what}.png`) });
+  await page.evaluate(() => window.aerobotCharts?.drawAll());
   await page.screenshot({ path: join(pictures, `${name}-page.png`), fullPage: true });
+  const view = await page.$('.view');
+  if (!view) {
+    console.log(`${name}: no view${faults.length ? `; ${faults.join('; ')}` : ''}`);
+    await page.close();
+    continue;
+  }
+  await view.evaluate((it) => it.scrollIntoView());
+  await settled(page);
+  const picture = async (what) => view.screenshot({ path: join(pictures, `${name}-${what}.png`) });
   const drawn = await page.evaluate(async () => {
     const view = window.aerobotView;
     view.play();
@@ -30,10 +40,10 @@ for (const file of readdirSync(reports).filter((name) => name.endsWith('.html'))
   });
   await settled(page);
   await picture('middle');
-  await page.evaluate(() => {
+  await page.evaluate((wanted) => {
     const names = [...document.querySelectorAll('[data-view="look"] option')].map((it) => it.value);
-    window.aerobotView.lookAt(names.at(-1));
-  });
+    window.aerobotView.lookAt(names.find((it) => it.endsWith(wanted)) ?? names.at(-1));
+  }, body ?? '\n');
   await settled(page);
   await picture('close');
   console.log(`${name}: ${drawn.toFixed(1)} pictures/s${faults.length ? `; ${faults.join('; ')}` : ''}`);
