@@ -3,9 +3,23 @@
 use aerobot_report::figure::{Figure, Series};
 
 use super::super::drawing::{over_time, panel};
-use super::ChaseFlight;
+use super::{ChaseFlight, DroneAir};
 
 pub(super) fn figures(flights: &[ChaseFlight]) -> Vec<Figure> {
+    let (own, other): (Vec<_>, Vec<_>) = flights
+        .iter()
+        .partition(|flight| flight.air == DroneAir::Own);
+    vec![
+        errors(
+            "chase-error",
+            "Place of the drone from the gondola (figure 21)",
+            &own,
+        ),
+        errors("chase-other-air", "The same in other air", &other),
+    ]
+}
+
+fn errors(name: &str, title: &str, flights: &[&ChaseFlight]) -> Figure {
     let panels = ["x", "y", "z"].iter().enumerate().map(|(axis, name)| {
         let series = flights.iter().enumerate().map(|(tone, flight)| {
             let rows = flight
@@ -16,10 +30,5 @@ pub(super) fn figures(flights: &[ChaseFlight]) -> Vec<Figure> {
         });
         panel(&format!("{name} error [m]"), series.collect())
     });
-    vec![over_time(
-        "chase-error",
-        "Place of the drone from the gondola (figure 21)",
-        "In a wind of its own, as the paper's figure needs; in the gondola's; in still air.",
-        panels.collect(),
-    )]
+    over_time(name, title, "Drone less gondola.", panels.collect())
 }

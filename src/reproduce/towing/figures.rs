@@ -5,36 +5,38 @@ use aerobot_report::figure::{Axis, Figure, Mark, Panel, Series};
 use super::WindResult;
 use super::line::LineShape;
 
-/// Points of a continuous line that are drawn.
+/// Points of the continuous line, and nodes of the flown one, that are drawn.
 const POINTS: usize = 200;
+const NODES: usize = 20;
 
 pub(super) fn figures(results: &[WindResult]) -> Vec<Figure> {
     vec![shapes(results), errors(results)]
 }
 
-fn line(name: String, shape: &LineShape, tone: usize) -> Series {
-    let every = shape.points.len().div_ceil(POINTS).max(1);
+fn line(name: String, shape: &LineShape, most: usize) -> Series {
+    let every = shape.points.len().div_ceil(most).max(1);
     let last = shape.points.len().saturating_sub(1);
     let points = shape.points.iter().enumerate();
     let points = points.filter(|(index, _)| index % every == 0 || *index == last);
-    Series::line(name, points.map(|(_, point)| (point.x_m, point.z_m))).with_tone(tone)
+    Series::line(name, points.map(|(_, point)| (point.x_m, point.z_m)))
 }
 
 fn shapes(results: &[WindResult]) -> Figure {
     let mut series = Vec::new();
     for (tone, result) in results.iter().enumerate() {
         let wind = format!("{} m/s", result.wind_m_s);
-        series.push(line(wind.clone(), &result.continuous, tone));
-        let flown = line(format!("{wind}, flown"), &result.dynamic, tone);
+        series.push(line(wind.clone(), &result.continuous, POINTS).with_tone(tone));
+        let flown = line(format!("{wind}, flown"), &result.dynamic, NODES).with_tone(tone);
         series.push(flown.with_mark(Mark::Points));
     }
     Figure {
         name: "towing-shapes".to_owned(),
         title: "Shape of the towline (figure 15)".to_owned(),
-        caption: "Lines: the continuous cable. Points: nodes of the run, at its end.".to_owned(),
+        caption: "Lines: the continuous cable. Points: some nodes of the run, at its end."
+            .to_owned(),
         panels: vec![Panel {
-            x: Axis::new("x from the top [m]"),
-            y: Axis::new("z from the top [m]"),
+            x: Axis::new("x downwind [m]"),
+            y: Axis::new("altitude [m]"),
             equal_axes: true,
             series,
             ..Panel::default()
