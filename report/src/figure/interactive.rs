@@ -148,9 +148,10 @@ fn axis(axis: &Axis, decades: f64) -> Map<String, Value> {
                 out.insert("dtick".into(), json!((decades / 8.0).ceil()));
             }
         }
-        // Metres, not kilometres by a `k` behind the number.
+        // Metres, not kilometres by a `k` behind the number; powers of ten from a million on.
         Scale::Linear => {
-            out.insert("exponentformat".into(), json!("none"));
+            out.insert("exponentformat".into(), json!("power"));
+            out.insert("minexponent".into(), json!(5));
         }
     }
     if let Some((low, high)) = axis.range {
