@@ -39,7 +39,7 @@ fn panel(values: &[f64], label: String) -> Option<Panel> {
         title: String::new(),
         x: Axis {
             range: Some((first, values.len() as f64)),
-            ..Axis::log("runs")
+            ..Axis::log("runs [1]")
         },
         y: Axis::new(format!("mean of {label}")),
         series: vec![

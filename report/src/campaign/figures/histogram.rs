@@ -46,7 +46,7 @@ fn panel(values: &[f64], label: String) -> Option<Panel> {
     Some(Panel {
         title: String::new(),
         x: Axis::new(label),
-        y: Axis::new("runs"),
+        y: Axis::new("runs [1]"),
         series,
         ..Panel::default()
     })
