@@ -293,6 +293,41 @@ fn a_broken_table_is_told_with_its_line() {
     }
 }
 
+/// A run that was killed has no summary; one that stopped says why.
+#[test]
+fn what_was_recorded_is_shown_however_the_run_ended() {
+    let folder = Scratch::new();
+    run(CHAIN, folder.text(), &["--until", "2"]);
+    fs::remove_file(folder.path("summary.json")).unwrap();
+    fs::remove_file(folder.path("timing.json")).unwrap();
+    let report = aerobot(&["report", folder.text()]);
+    assert!(report.status.success(), "{}", text(&report.stderr));
+    let page = fs::read_to_string(folder.path("report.html")).unwrap();
+    assert!(page.contains("killed, or under way") && page.contains("not known"));
+
+    let stopped = Scratch::new();
+    let falls = [
+        "run",
+        "scenes/examples/free_fall.ron",
+        "--out",
+        stopped.text(),
+        "--report",
+        "--quiet",
+    ];
+    let more = [
+        "--until",
+        "1e4",
+        "--set",
+        "environment.atmosphere=Vira",
+        "--set",
+        "run.output_every_s=10",
+    ];
+    let run = aerobot(&[&falls[..], &more].concat());
+    assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
+    let page = fs::read_to_string(stopped.path("report.html")).unwrap();
+    assert!(page.contains("stopped at "));
+}
+
 /// 10^5 rows of one body, with one sample that stands out.
 #[test]
 fn a_long_record_thins_itself_and_keeps_its_peaks() {

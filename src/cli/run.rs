@@ -56,15 +56,20 @@ pub(super) fn run(simulator: &Simulator, arguments: &RunArguments) -> ExitCode {
             &destination.folder,
         ));
     }
+    let mut is_reported = true;
     if arguments.report {
         match write_beside(simulator, &destination.folder) {
             Ok(file) if !arguments.quiet => say(format_args!("report in `{}`", file.display())),
             Ok(_) => {}
-            Err(message) => complain(message),
+            Err(message) => {
+                complain(message);
+                is_reported = false;
+            }
         }
     }
     match &finished.summary.stopped {
-        None => ExitCode::SUCCESS,
+        None if is_reported => ExitCode::SUCCESS,
+        None => ExitCode::from(STOPPED),
         Some(stop) => {
             complain(format_args!("error: {stop}"));
             complain(format_args!(
