@@ -62,7 +62,7 @@ export async function settled(page) {
 
 /** Pixels of a part of the page as it is shown: a function (x, y) to [red, green, blue]. */
 export async function pixels(page, clip) {
-  const picture = await page.screenshot({ clip, encoding: 'base64' });
+  const picture = await page.screenshot({ clip, encoding: 'base64', captureBeyondViewport: false });
   const { width, data } = await page.evaluate(async (text) => {
     const image = new Image();
     image.src = `data:image/png;base64,${text}`;

@@ -7,6 +7,7 @@ import { launch, open, settled } from './browser.js';
 
 const [reports, pictures] = process.argv.slice(2);
 mkdirSync(pictures, { recursive: true });
+const said = (faults) => (faults.length > 0 ? `; ${faults.join('; ')}` : '');
 const browser = await launch();
 for (const file of readdirSync(reports).filter((name) => name.endsWith('.html')).sort()) {
   const name = basename(file, '.html');
@@ -14,6 +15,12 @@ for (const file of readdirSync(reports).filter((name) => name.endsWith('.html'))
   await settled(page);
   const picture = (what) => page.screenshot({ path: join(pictures, `${name}-${what}.png`) });
   await page.screenshot({ path: join(pictures, `${name}-page.png`), fullPage: true });
+  if (!(await page.$('.view'))) {
+    console.log(`${name}: no view${said(faults)}`);
+    await page.close();
+    continue;
+  }
+  await page.$eval('.view', (view) => view.scrollIntoView({ block: 'end' }));
   const drawn = await page.evaluate(async () => {
     const view = window.aerobotView;
     view.play();
@@ -36,7 +43,7 @@ for (const file of readdirSync(reports).filter((name) => name.endsWith('.html'))
   });
   await settled(page);
   await picture('close');
-  console.log(`${name}: ${drawn.toFixed(1)} pictures/s${faults.length ? `; ${faults.join('; ')}` : ''}`);
+  console.log(`${name}: ${drawn.toFixed(1)} pictures/s${said(faults)}`);
   await page.close();
 }
 await browser.close();
