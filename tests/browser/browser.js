@@ -73,7 +73,10 @@ export async function pixels(page, clip) {
     context.drawImage(image, 0, 0);
     return { width: image.width, data: [...context.getImageData(0, 0, image.width, image.height).data] };
   }, picture);
-  return (x, y) => data.slice(4 * (Math.round(y) * width + Math.round(x)), 4 * (Math.round(y) * width + Math.round(x)) + 3);
+  return (x, y) => {
+    const at = 4 * (Math.round(y) * width + Math.round(x));
+    return data.slice(at, at + 3);
+  };
 }
 
 /** The part of the page that an element takes. */

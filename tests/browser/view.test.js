@@ -230,13 +230,15 @@ for (const file of files) {
       boxes.forEach((a, index) => {
         assert.ok(a.left >= stage.x - 1 && a.right <= stage.x + stage.width + 1);
         for (const b of boxes.slice(0, index)) {
-          const apart = a.right <= b.left + 1 || b.right <= a.left + 1 || a.bottom <= b.top + 1 || b.bottom <= a.top + 1;
+          const beside = a.right <= b.left + 1 || b.right <= a.left + 1;
+          const apart = beside || a.bottom <= b.top + 1 || b.bottom <= a.top + 1;
           assert.ok(apart, 'two names cover each other');
         }
       });
       await page.click('[data-view="labels"]');
       await settled(page);
-      const shown = await page.$$eval('.view-name', (all) => all.filter((it) => it.style.visibility === 'visible').length);
+      const shown = await page.$$eval('.view-name', (all) => (
+        all.filter((it) => it.style.visibility === 'visible').length));
       assert.equal(shown, 0);
       await page.click('[data-view="labels"]');
     });
