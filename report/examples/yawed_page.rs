@@ -1,5 +1,6 @@
 //! Writes a page of which one knows how it looks: `yawed_page PAGE`. A long bar lies along y, since it is
-//! yawed by a right angle, from 1 m behind its place to 7 m before it, and rises; a line that is cut half way through the run joins it to a ball.
+//! yawed by a right angle, from 1 m behind its place to 7 m before it, and rises; a line that is cut half
+//! way through the run joins it to a ball.
 
 use std::error::Error;
 use std::f64::consts::FRAC_PI_2;

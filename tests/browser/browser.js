@@ -62,7 +62,7 @@ export async function settled(page) {
 
 /** Pixels of a part of the page as it is shown: a function (x, y) to [red, green, blue]. */
 export async function pixels(page, clip) {
-  const picture = await page.screenshot({ clip, encoding: 'base64' });
+  const picture = await page.screenshot({ clip, encoding: 'base64', captureBeyondViewport: false });
   const { width, data } = await page.evaluate(async (text) => {
     const image = new Image();
     image.src = `data:image/png;base64,${text}`;
@@ -73,7 +73,10 @@ export async function pixels(page, clip) {
     context.drawImage(image, 0, 0);
     return { width: image.width, data: [...context.getImageData(0, 0, image.width, image.height).data] };
   }, picture);
-  return (x, y) => data.slice(4 * (Math.round(y) * width + Math.round(x)), 4 * (Math.round(y) * width + Math.round(x)) + 3);
+  return (x, y) => {
+    const at = 4 * (Math.round(y) * width + Math.round(x));
+    return data.slice(at, at + 3);
+  };
 }
 
 /** The part of the page that an element takes. */

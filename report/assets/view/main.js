@@ -163,7 +163,8 @@ class View {
     const centre_m = look.centre(states);
     camera.target_m = plus(centre_m, this.pan_m);
     if (this.isFitted) fit(camera, look.half_m);
-    const cage = this.isFitted ? cageAbout(camera, centre_m, look.half_m) : cageOf(camera, { centre_m, half_m: look.half_m });
+    const { half_m } = look;
+    const cage = this.isFitted ? cageAbout(camera, centre_m, half_m) : cageOf(camera, { centre_m, half_m });
     camera.reach_m = 2 * length(this.looks[0].half_m) + 2 * length(minus(camera.target_m, this.looks[0].centre(states)))
       + 2 * camera.height_m;
     const context = { options, cage, trailOf: look.body, time_s: this.player.time_s,

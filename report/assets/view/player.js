@@ -13,8 +13,8 @@ class Player {
     this.end_s = this.times_s[this.times_s.length - 1] ?? 0;
     this.time_s = this.start_s;
     this.speeds = speedsFor(this.end_s - this.start_s);
-    this.speed = this.speeds.reduce((best, it) => (
-      Math.abs(Math.log((it * WHOLE_S) / this.span_s())) < Math.abs(Math.log((best * WHOLE_S) / this.span_s())) ? it : best));
+    const off = (speed) => Math.abs(Math.log((speed * WHOLE_S) / this.span_s()));
+    this.speed = this.speeds.reduce((best, it) => (off(it) < off(best) ? it : best));
     this.isPlaying = false;
     this.isLooping = true;
     this.onChange = onChange;
