@@ -293,6 +293,60 @@ fn a_broken_table_is_told_with_its_line() {
     }
 }
 
+/// Numbers of segments that no run writes do not take all memory; rows whose time goes back are no record.
+#[test]
+fn rows_out_of_order_are_refused_and_tables_that_were_cut_are_told() {
+    let folder = Scratch::new();
+    run(CHAIN, folder.text(), &["--until", "4"]);
+    for (name, from, to, reason) in [
+        (
+            "tethers.csv",
+            "\n2,single-line,5,",
+            "\n2,single-line,99999999,",
+            "in the order 1, 2",
+        ),
+        (
+            "tethers.csv",
+            "\n2,single-line,5,",
+            "\n2,single-line,0,",
+            "in the order 1, 2",
+        ),
+        ("states.csv", "\n2,camera,", "\n1,camera,", "time goes back"),
+    ] {
+        let file = folder.path(name);
+        let whole = fs::read_to_string(&file).unwrap();
+        assert!(whole.contains(from), "{from}");
+        fs::write(&file, whole.replacen(from, to, 1)).unwrap();
+        let report = aerobot(&["report", folder.text()]);
+        let said = text(&report.stderr);
+        assert_eq!(report.status.code(), Some(2), "{said}");
+        assert!(
+            said.contains(&format!("{name}:")) && said.contains(reason),
+            "{said}"
+        );
+        fs::write(&file, whole).unwrap();
+    }
+    let file = folder.path("states.csv");
+    let whole = fs::read_to_string(&file).unwrap();
+    fs::write(&file, &whole[..whole.len() / 2]).unwrap();
+    assert!(aerobot(&["report", folder.text()]).status.success());
+    let page = fs::read_to_string(folder.path("report.html")).unwrap();
+    assert!(page.contains("the table `states` of") && page.contains("has been cut"));
+    fs::write(&file, "").unwrap();
+    assert_eq!(aerobot(&["report", folder.text()]).status.code(), Some(2));
+}
+
+/// Where nodes were not recorded there is no shape to show, and where bodies were not none of theirs.
+#[test]
+fn what_was_not_recorded_is_not_drawn() {
+    let folder = Scratch::new();
+    let more = ["--until", "2", "--set", "run.record.nodes=Never"];
+    run("scenes/paper/comparison_900m.ron", folder.text(), &more);
+    let plot = aerobot(&["plot", folder.text(), "shape"]);
+    assert_eq!(plot.status.code(), Some(2));
+    assert!(text(&plot.stderr).contains("run.record.nodes"));
+}
+
 /// A run that was killed has no summary; one that stopped says why.
 #[test]
 fn what_was_recorded_is_shown_however_the_run_ended() {

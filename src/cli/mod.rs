@@ -164,7 +164,7 @@ struct PlotArguments {
     /// File for the figure; `KIND.svg` in the folder unless given.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Overwrite a file that exists.
+    /// Overwrite the file of `--out` if it exists; `KIND.svg` is made anew in any case.
     #[arg(long)]
     force: bool,
     /// Print nothing but errors.

@@ -91,6 +91,12 @@ fn figure(
             folder.display()
         )
     };
+    let is_of_run = run_figures::RunFigureKind::of(kind).is_some();
+    if !arguments.with.is_empty() && !is_of_run && kinds().iter().any(|(name, _)| *name == kind) {
+        return Err(format!(
+            "error: `--with` lays runs over each other, and `{kind}` is no figure of a run"
+        ));
+    }
     if let Some(kind) = table_figures::TableFigureKind::of(kind) {
         return kind.figure(folder).map_err(nothing);
     }

@@ -37,6 +37,10 @@ fn motion(
     let nodes: Vec<Option<&StateTrack>> = (1..=count)
         .map(|number| record.tables.state(&format!("{}/{number}", track.name)))
         .collect();
+    if count > 1 && nodes.iter().all(Option::is_none) {
+        // Where its line was is not known.
+        return None;
+    }
     let mut points_m = Vec::with_capacity(times_s.len());
     let mut tensions_n = Vec::with_capacity(times_s.len());
     for (frame, time_s) in times_s.iter().enumerate() {

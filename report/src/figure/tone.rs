@@ -28,10 +28,14 @@ const fn tone(red: u8, green: u8, blue: u8, dashes: &'static [u32]) -> Tone {
 }
 
 impl Tone {
-    /// The tone of a place in the order; after the last it begins anew.
+    /// The tone of a place in the order; after the last colour they begin anew, with other dashes.
     #[must_use]
     pub fn of(place: usize) -> Self {
-        TONES[place % TONES.len()]
+        let count = TONES.len();
+        Self {
+            rgb: TONES[place % count].rgb,
+            dashes: TONES[(place + place / count) % count].dashes,
+        }
     }
 
     /// As CSS has it: `#1b1b1b`.

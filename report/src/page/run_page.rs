@@ -90,12 +90,44 @@ fn facts(records: &[Record]) -> Vec<Block> {
     ];
     let mut blocks = vec![Block::Table(TextTable { head, rows })];
     for record in records {
+        blocks.extend(cut_short(record).map(Block::Text));
         for warning in &record.summary.warnings {
             blocks.push(Block::Text(format!("Warning: {warning}.")));
         }
     }
     blocks.extend(records.iter().filter_map(events));
     blocks
+}
+
+/// What is said of tables that end before the run did: the last row of each stands at its end.
+fn cut_short(record: &Record) -> Option<String> {
+    if record.summary.outcome != "done" {
+        return None;
+    }
+    let end_s = record.summary.simulated_s;
+    let tables = &record.tables;
+    let last = |times: &mut dyn Iterator<Item = &Vec<f64>>| {
+        let ends = times.filter_map(|times| times.last().copied());
+        ends.reduce(f64::max)
+    };
+    let segments = tables.tethers.iter().flat_map(|tether| &tether.segments);
+    let ends_s = [
+        (
+            "states",
+            last(&mut tables.states.iter().map(|track| &track.times_s)),
+        ),
+        ("tethers", last(&mut segments.map(|track| &track.times_s))),
+    ];
+    let (name, last_s) = ends_s
+        .into_iter()
+        .filter_map(|(name, last_s)| Some((name, last_s?)))
+        .find(|(_, last_s)| *last_s < end_s * (1.0 - 1e-9))?;
+    Some(format!(
+        "Warning: the table `{name}` of {} ends at {} s, and the run at {} s: the file has been cut.",
+        record.label,
+        number_text(last_s),
+        number_text(end_s)
+    ))
 }
 
 fn steps(record: &Record) -> String {

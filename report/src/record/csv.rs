@@ -23,8 +23,7 @@ pub(super) fn read(folder: &Path, tables: &mut Tables) -> Result<(), RecordError
             velocity_m_s,
             rotation,
         };
-        tables.take_state(time_s, name, state);
-        Ok(())
+        tables.take_state(time_s, name, state)
     })?;
     read_rows(&folder.join("tethers.csv"), TETHERS_HEADER, |fields| {
         let time_s = number(fields.next())?;
@@ -32,15 +31,13 @@ pub(super) fn read(folder: &Path, tables: &mut Tables) -> Result<(), RecordError
         let segment = fields.next().and_then(|field| field.parse().ok());
         let segment = segment.ok_or("a segment is a number from 1")?;
         let values = (number(fields.next())?, number(fields.next())?);
-        tables.take_segment(time_s, name, segment, values);
-        Ok(())
+        tables.take_segment(time_s, name, segment, values)
     })?;
     read_rows(&folder.join("channels.csv"), CHANNELS_HEADER, |fields| {
         let time_s = number(fields.next())?;
         let entity = fields.next().ok_or("a field is missing")?;
         let channel = fields.next().ok_or("a field is missing")?;
-        tables.take_channel(time_s, entity, channel, number(fields.next())?);
-        Ok(())
+        tables.take_channel(time_s, entity, channel, number(fields.next())?)
     })
 }
 
@@ -60,7 +57,8 @@ fn read_rows(
     for line in 1.. {
         text.clear();
         let read = reader.read_line(&mut text).map_err(unreadable)?;
-        if read == 0 || !text.ends_with('\n') {
+        let is_cut = read == 0 || !text.ends_with('\n');
+        if is_cut && line > 1 {
             break;
         }
         let row = text.trim_end();

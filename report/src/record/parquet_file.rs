@@ -31,8 +31,9 @@ pub(super) fn read(folder: &Path, tables: &mut Tables) -> Result<(), RecordError
             velocity_m_s: vector(row, 5)?,
             rotation,
         };
-        tables.take_state(number(row, 0)?, text(row, 1)?, state);
-        Some(())
+        tables
+            .take_state(number(row, 0)?, text(row, 1)?, state)
+            .ok()
     })?;
     read_rows(&folder.join("tethers.parquet"), |row| {
         let segment = match row.get_column_iter().nth(2)?.1 {
@@ -41,17 +42,19 @@ pub(super) fn read(folder: &Path, tables: &mut Tables) -> Result<(), RecordError
             _ => return None,
         };
         let values = (number(row, 3)?, number(row, 4)?);
-        tables.take_segment(number(row, 0)?, text(row, 1)?, segment, values);
-        Some(())
+        tables
+            .take_segment(number(row, 0)?, text(row, 1)?, segment, values)
+            .ok()
     })?;
     read_rows(&folder.join("channels.parquet"), |row| {
-        tables.take_channel(
-            number(row, 0)?,
-            text(row, 1)?,
-            text(row, 2)?,
-            number(row, 3)?,
-        );
-        Some(())
+        tables
+            .take_channel(
+                number(row, 0)?,
+                text(row, 1)?,
+                text(row, 2)?,
+                number(row, 3)?,
+            )
+            .ok()
     })
 }
 

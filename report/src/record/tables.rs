@@ -205,7 +205,7 @@ impl Tables {
             .map(|(start, end)| start..end)
     }
 
-    pub(super) fn take_state(&mut self, time_s: f64, name: &str, row: State) {
+    pub(super) fn take_state(&mut self, time_s: f64, name: &str, row: State) -> Taken {
         let place = place_of(&mut self.places.states, name, &mut self.states, |name| {
             StateTrack {
                 name,
@@ -213,10 +213,11 @@ impl Tables {
             }
         });
         let track = &mut self.states[place];
-        track.times_s.push(time_s);
+        follow(&mut track.times_s, time_s)?;
         track.positions_m.push(row.position_m);
         track.velocities_m_s.push(row.velocity_m_s);
         track.rotations.extend(row.rotation);
+        Ok(())
     }
 
     pub(super) fn take_segment(
@@ -225,7 +226,7 @@ impl Tables {
         name: &str,
         number: usize,
         (tension_n, length_m): (f64, f64),
-    ) {
+    ) -> Taken {
         let place = place_of(&mut self.places.tethers, name, &mut self.tethers, |name| {
             TetherTrack {
                 name,
@@ -233,21 +234,27 @@ impl Tables {
             }
         });
         let segments = &mut self.tethers[place].segments;
-        if segments.len() < number {
-            segments.resize(number, SegmentTrack::default());
+        // Rows of one time are in the order of their numbers, so that a number is new by one at most.
+        if number == 0 || number > segments.len() + 1 {
+            return Err("a tether has its segments in the order 1, 2, ...");
         }
-        let Some(track) = number
-            .checked_sub(1)
-            .and_then(|place| segments.get_mut(place))
-        else {
-            return;
-        };
-        track.times_s.push(time_s);
+        if number > segments.len() {
+            segments.push(SegmentTrack::default());
+        }
+        let track = &mut segments[number - 1];
+        follow(&mut track.times_s, time_s)?;
         track.tensions_n.push(tension_n);
         track.lengths_m.push(length_m);
+        Ok(())
     }
 
-    pub(super) fn take_channel(&mut self, time_s: f64, entity: &str, channel: &str, value: f64) {
+    pub(super) fn take_channel(
+        &mut self,
+        time_s: f64,
+        entity: &str,
+        channel: &str,
+        value: f64,
+    ) -> Taken {
         let key = (entity.to_owned(), channel.to_owned());
         let place = *self.places.channels.entry(key).or_insert_with_key(|key| {
             self.channels.push(ChannelTrack {
@@ -258,9 +265,22 @@ impl Tables {
             self.channels.len() - 1
         });
         let track = &mut self.channels[place];
-        track.times_s.push(time_s);
+        follow(&mut track.times_s, time_s)?;
         track.values.push(value);
+        Ok(())
     }
+}
+
+/// Whether a row is as a run writes it, or why not.
+pub(super) type Taken = Result<(), &'static str>;
+
+/// Times of one track do not go back.
+fn follow(times_s: &mut Vec<f64>, time_s: f64) -> Taken {
+    if times_s.last().is_some_and(|last| *last > time_s) {
+        return Err("time goes back");
+    }
+    times_s.push(time_s);
+    Ok(())
 }
 
 fn place_of<T>(
@@ -285,14 +305,17 @@ impl ResultSink for Tables {
                 velocity_m_s: row.velocity_m_s,
                 rotation: row.rotation,
             };
-            self.take_state(frame.time_s, &row.entity, state);
+            self.take_state(frame.time_s, &row.entity, state)
+                .map_err(io::Error::other)?;
         }
         for row in &frame.segments {
             let values = (row.tension_n, row.length_m);
-            self.take_segment(frame.time_s, &row.tether, row.segment as usize, values);
+            self.take_segment(frame.time_s, &row.tether, row.segment as usize, values)
+                .map_err(io::Error::other)?;
         }
         for row in &frame.channels {
-            self.take_channel(frame.time_s, &row.entity, row.channel, row.value);
+            self.take_channel(frame.time_s, &row.entity, row.channel, row.value)
+                .map_err(io::Error::other)?;
         }
         Ok(())
     }

@@ -115,6 +115,18 @@ pub const KINDS: [RunFigureKind; 17] = [
     },
 ];
 
+/// Those that show bodies.
+const OF_BODIES: [&str; 8] = [
+    "displacement",
+    "attitude",
+    "altitude",
+    "path",
+    "shape",
+    "relative-wind",
+    "spectrum",
+    "docking",
+];
+
 const fn kind(
     name: &'static str,
     about: &'static str,
@@ -143,7 +155,13 @@ impl RunFigureKind {
         let mut found = Vec::new();
         let mut reason = None;
         for record in records {
-            match (self.make)(simulator, record) {
+            let is_there =
+                !OF_BODIES.contains(&self.name) || record.tables.bodies().next().is_some();
+            let made = match is_there {
+                true => (self.make)(simulator, record),
+                false => nothing("no body was recorded (`run.record.bodies`)"),
+            };
+            match made {
                 Ok(figure) => found.push((record.label.as_str(), figure)),
                 Err(why) => reason = Some(why),
             }

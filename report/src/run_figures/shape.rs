@@ -12,7 +12,7 @@ pub(super) fn shapes(record: &Record) -> Result<Figure, String> {
     let animation = Animation::of(record, 40 * INSTANTS);
     let frames = animation.times_s.len();
     if animation.tethers.is_empty() || frames == 0 {
-        return nothing("no tether was recorded");
+        return nothing("no tether was recorded with its nodes (`run.record.nodes`)");
     }
     let first = animation.bodies.iter();
     let Some(top) = first.max_by(|a, b| a.positions_m[0].z.total_cmp(&b.positions_m[0].z)) else {
