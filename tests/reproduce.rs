@@ -89,6 +89,7 @@ fn val_pendulum_and_torsion_couple_off_the_axis() {
 fn val_the_spectrum_of_a_flight_shows_its_modes() {
     use aerobot::engine::modes::Motion;
     use aerobot::reproduce::mojave::{MojaveSettings, study};
+    use aerobot_report::spectrum::{peak_near, peaks};
     let settings = MojaveSettings {
         offsets_m: vec![0.05],
         offset_of_links_m: 0.05,
@@ -103,12 +104,12 @@ fn val_the_spectrum_of_a_flight_shows_its_modes() {
         (&result.turn, Motion::Yaw),
     ] {
         let mode_hz = result.mode_hz(motion).unwrap();
-        let (peak_hz, _) = spectrum.peak_near(mode_hz, 0.05).unwrap();
+        let peak_hz = peak_near(spectrum, mode_hz, 0.05).unwrap().frequency_hz;
         println!("{motion:?}: mode {mode_hz} Hz, peak {peak_hz} Hz");
         assert!((peak_hz / mode_hz - 1.0).abs() < 0.005);
     }
     // Two frequencies, and not one peak near both.
-    assert!(result.turn.peaks(0.05).len() >= 2);
+    assert!(peaks(&result.turn, 0.05).len() >= 2);
 }
 
 /// Momentum and power, from the library; a seed other than those of the case.

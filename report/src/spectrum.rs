@@ -10,8 +10,8 @@ const LEAST: usize = 16;
 /// Times are even to this part of their step.
 const EVEN: f64 = 1e-6;
 
-/// Amplitudes at the frequencies k / T.
-#[derive(Clone, Debug, PartialEq)]
+/// Amplitudes at even frequencies, from zero to the highest that the samples have.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Spectrum {
     /// Frequencies, Hz.
     pub frequencies_hz: Vec<f64>,
@@ -24,7 +24,7 @@ pub struct Spectrum {
 pub struct Peak {
     /// Frequency between bins, Hz.
     pub frequency_hz: f64,
-    /// Amplitude in its bin.
+    /// Amplitude between bins, in the unit of the record.
     pub amplitude: f64,
 }
 
@@ -35,12 +35,34 @@ impl Spectrum {
         let amplitudes = self.amplitudes.iter().skip(1);
         amplitudes.fold(0.0, |most: f64, amplitude| most.max(*amplitude))
     }
+
+    /// Frequencies (Hz) with their amplitudes.
+    pub fn points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let frequencies_hz = self.frequencies_hz.iter().copied();
+        frequencies_hz.zip(self.amplitudes.iter().copied())
+    }
+
+    /// What is at or below a frequency, Hz.
+    #[must_use]
+    pub fn up_to(mut self, frequency_hz: f64) -> Self {
+        let kept = self
+            .frequencies_hz
+            .partition_point(|hz| *hz <= frequency_hz);
+        self.frequencies_hz.truncate(kept);
+        self.amplitudes.truncate(kept);
+        self
+    }
 }
 
-/// The amplitude spectrum under a Hann window, the straight line of least squares taken off; nothing if there
-/// are too few samples or their times are not even. A last sample off the grid is left out.
+/// The amplitude spectrum under a Hann window, the straight line of least squares taken off, with so many points for
+/// each bin of the record: its frequencies are k / T with one point, and closer, by zeros behind the record, with more.
+/// Nothing if there are too few samples or their times are not even. A last sample off the grid is left out.
 #[must_use]
-pub fn amplitude_spectrum(times_s: &[f64], values: &[f64]) -> Option<Spectrum> {
+pub fn amplitude_spectrum(
+    times_s: &[f64],
+    values: &[f64],
+    points_of_bin: usize,
+) -> Option<Spectrum> {
     let step_s = times_s.get(1)? - times_s.first()?;
     let is_even = |pair: &[f64]| (pair[1] - pair[0] - step_s).abs() <= EVEN * step_s;
     let even = times_s.windows(2).take_while(|pair| is_even(pair)).count() + 1;
@@ -56,15 +78,17 @@ pub fn amplitude_spectrum(times_s: &[f64], values: &[f64]) -> Option<Spectrum> {
             Complex::new(window * value, 0.0)
         })
         .collect();
+    let points = count * points_of_bin.max(1);
+    record.resize(points, Complex::default());
     FftPlanner::new()
-        .plan_fft_forward(count)
+        .plan_fft_forward(points)
         .process(&mut record);
     // The window lets half of an amplitude through, and a sine has two lines.
     let scale = 4.0 / count as f64;
-    let half = count / 2 + 1;
+    let half = points / 2 + 1;
     Some(Spectrum {
         frequencies_hz: (0..half)
-            .map(|index| index as f64 / (count as f64 * step_s))
+            .map(|index| index as f64 / (points as f64 * step_s))
             .collect(),
         amplitudes: record[..half]
             .iter()
@@ -89,57 +113,89 @@ fn detrended(values: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Peaks, the largest first: bins that are larger than the two on either side and a fiftieth of the largest,
-/// placed by the parabola through the logarithms of three.
+/// Peaks of at least a part of the largest amplitude, the largest first: points that are larger than the two on either
+/// side, placed by the parabola through the logarithms of three.
 #[must_use]
-pub fn peaks(spectrum: &Spectrum) -> Vec<Peak> {
+pub fn peaks(spectrum: &Spectrum, least_part: f64) -> Vec<Peak> {
     let amplitudes = &spectrum.amplitudes;
-    let least = spectrum.largest() / 50.0;
-    let width_hz = spectrum.frequencies_hz.get(1).copied().unwrap_or_default();
+    let least = least_part * spectrum.largest();
     let mut found: Vec<Peak> = (2..amplitudes.len().saturating_sub(2))
         .filter(|index| {
             let here = amplitudes[*index];
             let beside = [index - 2, index - 1, index + 1, index + 2];
             here > least && beside.iter().all(|other| amplitudes[*other] < here)
         })
-        .map(|index| {
-            let log = |index: usize| libm::log(amplitudes[index].max(f64::MIN_POSITIVE));
-            let (before, here, after) = (log(index - 1), log(index), log(index + 1));
-            let shift = 0.5 * (before - after) / (before - 2.0 * here + after);
-            Peak {
-                frequency_hz: spectrum.frequencies_hz[index] + shift * width_hz,
-                amplitude: amplitudes[index],
-            }
-        })
+        .map(|index| between_bins(spectrum, index))
         .collect();
     found.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
     found
+}
+
+/// The peak nearest to a frequency (Hz), of those of at least a part of the largest amplitude.
+#[must_use]
+pub fn peak_near(spectrum: &Spectrum, frequency_hz: f64, least_part: f64) -> Option<Peak> {
+    let away = |peak: &Peak| (peak.frequency_hz - frequency_hz).abs();
+    let peaks = peaks(spectrum, least_part).into_iter();
+    peaks.min_by(|a, b| away(a).total_cmp(&away(b)))
+}
+
+fn between_bins(spectrum: &Spectrum, index: usize) -> Peak {
+    let log = |index: usize| libm::log(spectrum.amplitudes[index].max(f64::MIN_POSITIVE));
+    let (before, here, after) = (log(index - 1), log(index), log(index + 1));
+    let shift = 0.5 * (before - after) / (before - 2.0 * here + after);
+    let width_hz = spectrum.frequencies_hz.get(1).copied().unwrap_or_default();
+    Peak {
+        frequency_hz: spectrum.frequencies_hz[index] + shift * width_hz,
+        amplitude: libm::exp(here - 0.25 * (before - after) * shift),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn record(step_s: f64, count: u32, value: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
+        let times_s = (0..count).map(|index| step_s * f64::from(index));
+        let times_s: Vec<f64> = times_s.collect();
+        let values = times_s.iter().map(|time_s| value(*time_s)).collect();
+        (times_s, values)
+    }
+
+    fn assert_peaks(peaks: &[Peak], wanted: &[(f64, f64)]) {
+        assert_eq!(peaks.len(), wanted.len(), "{peaks:?}");
+        for (peak, (hz, amplitude)) in peaks.iter().zip(wanted) {
+            assert!((peak.frequency_hz - hz).abs() < 2e-4, "{peaks:?}");
+            // The parabola through three lines of a Hann window is too high by up to 3.8 %, half way between two.
+            assert!((peak.amplitude / amplitude - 1.0).abs() < 0.04, "{peaks:?}");
+        }
+    }
+
     #[test]
     fn two_sines_on_a_slope_are_found() {
-        let times_s: Vec<f64> = (0..2001).map(|index| 0.1 * f64::from(index)).collect();
-        let value = |t: f64| {
+        let (times_s, values) = record(0.1, 2001, |t| {
             3.0 * libm::sin(TAU * 0.1234 * t) + 0.5 * libm::cos(TAU * 0.777 * t) + 40.0 - 0.3 * t
-        };
-        let values: Vec<f64> = times_s.iter().map(|t| value(*t)).collect();
-        let spectrum = amplitude_spectrum(&times_s, &values).unwrap();
-        let peaks = peaks(&spectrum);
-        assert_eq!(peaks.len(), 2);
-        assert!((peaks[0].frequency_hz - 0.1234).abs() < 2e-4);
-        assert!((peaks[1].frequency_hz - 0.777).abs() < 2e-4);
-        // Between two bins a Hann window shows at least 85 % of an amplitude.
-        assert!((0.84 * 3.0..3.01).contains(&peaks[0].amplitude));
-        assert!((0.84 * 0.5..0.51).contains(&peaks[1].amplitude));
+        });
+        for points in [1, 4] {
+            let spectrum = amplitude_spectrum(&times_s, &values, points).unwrap();
+            assert_peaks(&peaks(&spectrum, 0.05), &[(0.1234, 3.0), (0.777, 0.5)]);
+        }
+    }
+
+    /// Four bins apart: 300 s at 10 Hz.
+    #[test]
+    fn two_sines_close_together_are_told_apart() {
+        let (times_s, values) = record(0.1, 3000, |t| {
+            2.0 * libm::sin(TAU * 0.1894 * t + 0.4) + 0.5 * libm::cos(TAU * 0.2031 * t) - 0.02 * t
+        });
+        let spectrum = amplitude_spectrum(&times_s, &values, 4).unwrap();
+        let found = peaks(&spectrum, 0.1);
+        assert_peaks(&found, &[(0.1894, 2.0), (0.2031, 0.5)]);
+        assert_eq!(peak_near(&spectrum, 0.21, 0.1), Some(found[1]));
     }
 
     #[test]
     fn uneven_times_have_no_spectrum() {
         let times_s: Vec<f64> = (0..100).map(|index| f64::from(index * index)).collect();
-        assert!(amplitude_spectrum(&times_s, &times_s).is_none());
+        assert!(amplitude_spectrum(&times_s, &times_s, 1).is_none());
     }
 }

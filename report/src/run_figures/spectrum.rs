@@ -4,11 +4,13 @@ use super::motion::{unwound, yaw_pitch_roll};
 use super::nothing;
 use crate::figure::{Axis, Figure, Label, Panel, Series};
 use crate::record::{Record, StateTrack};
-use crate::spectrum::{Spectrum, amplitude_spectrum, peaks};
+use crate::spectrum::{Peak, Spectrum, amplitude_spectrum, peaks};
 
-/// Peaks that are named in a panel.
-const NAMED: usize = 4;
-/// Amplitudes below this part of the largest are not looked at.
+/// Peaks that are named in a panel, at most.
+const NAMED: usize = 6;
+/// Peaks of a body below this part of its largest are not named: a Hann window has side lobes.
+const LEAST_PEAK: f64 = 0.03;
+/// Amplitudes below this part of the panel's largest are drawn at it.
 const LEAST: f64 = 1e-5;
 
 /// Amplitude spectra of the displacements and of the yaw of every body.
@@ -41,9 +43,10 @@ pub(super) fn spectrum(record: &Record) -> Result<Figure, String> {
     }
     Ok(Figure {
         title: "Spectra of the motions".to_owned(),
-        caption: "Amplitudes under a Hann window, the straight line through each record taken off; named are the \
-                  largest peaks, placed between bins."
-            .to_owned(),
+        caption: format!(
+            "Amplitudes under a Hann window, the straight line through each record taken off, down to {LEAST:e} of \
+             the largest. Named are the largest peaks of all bodies, placed between bins."
+        ),
         panels,
         ..Figure::default()
     })
@@ -52,7 +55,7 @@ pub(super) fn spectrum(record: &Record) -> Result<Figure, String> {
 fn panel(record: &Record, label: &str, signal: fn(&StateTrack) -> Vec<f64>) -> Option<Panel> {
     let mut found: Vec<(usize, &StateTrack, Spectrum)> = Vec::new();
     for (place, body) in record.tables.bodies().enumerate() {
-        if let Some(spectrum) = amplitude_spectrum(&body.times_s, &signal(body)) {
+        if let Some(spectrum) = amplitude_spectrum(&body.times_s, &signal(body), 1) {
             found.push((place, body, spectrum));
         }
     }
@@ -63,17 +66,14 @@ fn panel(record: &Record, label: &str, signal: fn(&StateTrack) -> Vec<f64>) -> O
     if largest < 1e-9 {
         return None;
     }
-    let mut labels: Vec<Label> = Vec::new();
-    let strongest = found
+    let width_hz = found
         .iter()
-        .max_by(|a, b| a.2.largest().total_cmp(&b.2.largest()))?;
-    for peak in peaks(&strongest.2).into_iter().take(NAMED) {
-        labels.push(Label {
-            x: peak.frequency_hz,
-            y: peak.amplitude,
-            text: format!("{} Hz", significant(peak.frequency_hz)),
-        });
-    }
+        .filter_map(|(_, _, spectrum)| spectrum.frequencies_hz.get(1))
+        .fold(0.0, |most: f64, width_hz| most.max(*width_hz));
+    let all = found
+        .iter()
+        .flat_map(|(_, _, spectrum)| peaks(spectrum, LEAST_PEAK));
+    let visible = all.filter(|peak| peak.amplitude > 2.0 * LEAST * largest);
     let series = found.iter().map(|(place, body, spectrum)| {
         let rows = spectrum
             .frequencies_hz
@@ -87,13 +87,32 @@ fn panel(record: &Record, label: &str, signal: fn(&StateTrack) -> Vec<f64>) -> O
         x: Axis::log("frequency [Hz]"),
         y: Axis::log(label),
         series: series.collect(),
-        labels,
+        labels: names(visible.collect(), width_hz),
         ..Panel::default()
     })
 }
 
-/// Three significant digits.
-fn significant(value: f64) -> String {
-    let decimals = (2.0 - libm::log10(value.abs()).floor()).clamp(0.0, 9.0) as usize;
-    format!("{value:.decimals$}")
+/// Names of the largest peaks of all bodies; of those that a record cannot tell apart, of the largest.
+fn names(mut peaks: Vec<Peak>, width_hz: f64) -> Vec<Label> {
+    peaks.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
+    let mut named: Vec<Peak> = Vec::new();
+    for peak in peaks {
+        let is_near =
+            |other: &Peak| (other.frequency_hz - peak.frequency_hz).abs() < 2.0 * width_hz;
+        if named.len() < NAMED && !named.iter().any(is_near) {
+            named.push(peak);
+        }
+    }
+    let name = |peak: Peak| Label {
+        x: peak.frequency_hz,
+        y: peak.amplitude,
+        text: format!("{} Hz", told(peak.frequency_hz, width_hz)),
+    };
+    named.into_iter().map(name).collect()
+}
+
+/// A frequency with the digits that a record with lines so far apart can have: a tenth of a line.
+fn told(frequency_hz: f64, width_hz: f64) -> String {
+    let decimals = (1.0 - libm::log10(width_hz).floor()).clamp(0.0, 9.0) as usize;
+    format!("{frequency_hz:.decimals$}")
 }

@@ -2,9 +2,10 @@
 
 use aerobot_engine::modes::Motion;
 use aerobot_report::figure::{Axis, Figure, Label, Panel, Series};
+use aerobot_report::spectrum::Spectrum;
 
 use super::super::drawing::{degrees, over_time, panel};
-use super::{MojaveStudy, OffsetResult, Spectrum};
+use super::{MojaveStudy, OffsetResult};
 
 pub(super) fn figures(found: &MojaveStudy) -> Vec<Figure> {
     vec![motion(found), spectra(found)]
@@ -41,10 +42,8 @@ fn spectra(found: &MojaveStudy) -> Figure {
         let results = found.offsets.iter().enumerate();
         let series: Vec<Series> = results
             .map(|(tone, result)| {
-                let points = of(result)
-                    .points
-                    .iter()
-                    .map(|(hz, angle)| (*hz, angle.to_degrees()));
+                let points = of(result).points();
+                let points = points.map(|(hz, angle)| (hz, angle.to_degrees()));
                 Series::line(name(result.flown.offset_m), points).with_tone(tone)
             })
             .collect();

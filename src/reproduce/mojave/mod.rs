@@ -3,14 +3,12 @@
 
 mod figures;
 mod report;
-mod spectrum;
 
 use aerobot_components::run::Formulation;
 use aerobot_engine::modes::{Mode, ModesRequest, Motion};
 use aerobot_engine::plugin::Simulator;
 use aerobot_engine::scene::{Scene, SceneError};
-
-pub use spectrum::Spectrum;
+use aerobot_report::spectrum::{Spectrum, amplitude_spectrum};
 
 use super::check::largest;
 use super::flight::{Flight, PaperScene, formulation_override};
@@ -29,6 +27,8 @@ pub(super) const GONDOLA: &str = "gondola";
 pub const CALM_S: f64 = 12.0;
 /// Spectra end here, Hz.
 const HIGHEST_HZ: f64 = 1.0;
+/// Points of a spectrum for each bin of the record.
+const POINTS_OF_BIN: usize = 4;
 
 /// Pendulum and torsion coupled.
 #[derive(Clone, Copy, Debug)]
@@ -169,12 +169,11 @@ pub fn study(
     for offset_m in &settings.offsets_m {
         let (flown, scene) = fly(*offset_m, Formulation::LumpedMass, &[])?;
         let mut simulation = simulator.build(&scene)?;
-        let interval_s = scene.run.output_every_s;
         offsets.push(OffsetResult {
             pair: HungPair::of(&scene, &simulation, BALLOON, GONDOLA)?,
             modes: simulation.modes(&scene, &ModesRequest::default())?.modes,
-            swing: calm(&flown.swing(), interval_s),
-            turn: calm(&flown.turn(), interval_s),
+            swing: calm(&flown.swing()),
+            turn: calm(&flown.turn()),
             flown,
         });
     }
@@ -226,10 +225,12 @@ fn stiffer(until_s: f64, factor: f64) -> Vec<String> {
 }
 
 /// The spectrum of what is recorded after the gust.
-fn calm(record: &[(f64, f64)], interval_s: f64) -> Spectrum {
-    let values = record.iter().filter(|(time_s, _)| *time_s >= CALM_S);
-    let values: Vec<f64> = values.map(|(_, value)| *value).collect();
-    Spectrum::of(&values, interval_s, HIGHEST_HZ)
+fn calm(record: &[(f64, f64)]) -> Spectrum {
+    let calm = record.iter().filter(|(time_s, _)| *time_s >= CALM_S);
+    let (times_s, values): (Vec<f64>, Vec<f64>) = calm.copied().unzip();
+    amplitude_spectrum(&times_s, &values, POINTS_OF_BIN)
+        .unwrap_or_default()
+        .up_to(HIGHEST_HZ)
 }
 
 fn scene(

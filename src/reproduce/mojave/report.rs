@@ -2,6 +2,7 @@
 
 use aerobot_engine::modes::Motion;
 use aerobot_engine::recording::number::number_text;
+use aerobot_report::spectrum::{Spectrum, peak_near, peaks};
 
 use super::super::check::{Check, Tolerance, Verdict, largest};
 use super::super::flight::row;
@@ -137,10 +138,10 @@ fn of_peaks(result: &OffsetResult) -> Vec<Check> {
     if turns_apart(result) && result.flown.offset_m != 0.0 {
         wanted.push(("turn", &result.turn, "swing", swing_hz));
     }
-    let near = |(record, spectrum, mode, hz): (&str, &super::Spectrum, &str, Option<f64>)| {
+    let near = |(record, spectrum, mode, hz): (&str, &Spectrum, &str, Option<f64>)| {
         let hz = hz.unwrap_or(f64::NAN);
-        let peak = spectrum.peak_near(hz, LEAST_PEAK);
-        let peak_hz = peak.map_or(f64::NAN, |(peak_hz, _)| peak_hz);
+        let peak = peak_near(spectrum, hz, LEAST_PEAK);
+        let peak_hz = peak.map_or(f64::NAN, |peak| peak.frequency_hz);
         let what = format!(
             "peak in the spectrum of the {record} near the mode of the {mode}, offset {offset} m"
         );
@@ -211,11 +212,14 @@ fn other_formulation(found: &MojaveStudy) -> Vec<Check> {
 
 fn offset(result: &OffsetResult) -> String {
     let told = |hz: Option<f64>| hz.map_or_else(|| "-".to_owned(), |hz| format!("{hz:.5}"));
-    let peaks = |spectrum: &super::Spectrum| {
-        let peaks = spectrum.peaks(LEAST_PEAK).into_iter();
-        let told: Vec<String> = peaks
+    let told_peaks = |spectrum: &Spectrum| {
+        let told: Vec<String> = peaks(spectrum, LEAST_PEAK)
+            .into_iter()
             .take(4)
-            .map(|(hz, amplitude)| format!("{hz:.4} ({:.4} deg)", amplitude.to_degrees()))
+            .map(|peak| {
+                let amplitude_deg = peak.amplitude.to_degrees();
+                format!("{:.4} ({amplitude_deg:.4} deg)", peak.frequency_hz)
+            })
             .collect();
         told.join(", ")
     };
@@ -230,13 +234,13 @@ fn offset(result: &OffsetResult) -> String {
         "  swing: mode {}, closed form {:.5}, peaks {}\n",
         told(result.mode_hz(Motion::X)),
         result.pair.swing_hz(),
-        peaks(&result.swing)
+        told_peaks(&result.swing)
     ));
     // Round-off has peaks too.
     let turns = if result.flown.offset_m == 0.0 {
         "none".to_owned()
     } else {
-        peaks(&result.turn)
+        told_peaks(&result.turn)
     };
     text.push_str(&format!(
         "  turn:  mode {}, closed form {:.5}, peaks {turns}\n",
@@ -272,10 +276,10 @@ fn motion(found: &MojaveStudy) -> String {
 fn spectra(found: &MojaveStudy) -> String {
     let mut text = "offset_m,frequency_hz,swing_rad,turn_rad\n".to_owned();
     for result in &found.offsets {
-        for ((hz, swing), (_, turn)) in result.swing.points.iter().zip(&result.turn.points) {
+        for ((hz, swing), (_, turn)) in result.swing.points().zip(result.turn.points()) {
             row(
                 &mut text,
-                &[result.flown.offset_m, *hz, *swing, *turn].map(number_text),
+                &[result.flown.offset_m, hz, swing, turn].map(number_text),
             );
         }
     }
