@@ -150,6 +150,7 @@ fn check(scene: &Scene, report: &mut FieldReport) {
             );
         }
         if let Some(docking) = entity.get::<Docking>() {
+            check_speed(entity, docking, latch, report);
             check_guidance(entity, docking, report);
         }
     }
@@ -217,6 +218,20 @@ fn check_guidance(entity: &SceneEntity, docking: &Docking, report: &mut FieldRep
                 rotorcraft.period_s
             ),
             "the first has to be the second or a multiple of it (`Rotorcraft.period_s`)",
+        );
+    }
+}
+
+/// A latch that closes more slowly than the drone comes never does.
+fn check_speed(entity: &SceneEntity, docking: &Docking, latch: &Latch, report: &mut FieldReport) {
+    if docking.closing_speed_m_s > latch.speed_m_s {
+        report.add(
+            &format!("{}.closing_speed_m_s", entity.path::<Docking>()),
+            format!(
+                "the drone would come at {} m/s, and its latch closes at {} m/s at most",
+                docking.closing_speed_m_s, latch.speed_m_s
+            ),
+            "close in more slowly, or raise `Latch.speed_m_s`",
         );
     }
 }

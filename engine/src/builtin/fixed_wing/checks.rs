@@ -1,6 +1,6 @@
 //! What must hold between a drone and the rest of its scene.
 
-use aerobot_components::body::{Body, Fixed, Moving};
+use aerobot_components::body::{AttitudeSpec, Body, Fixed, Moving, Pose};
 use aerobot_components::fixed_wing::FixedWing;
 use aerobot_components::inertia::InertiaShape;
 use aerobot_components::scene_component::FieldReport;
@@ -19,6 +19,14 @@ pub(super) fn check(scene: &Scene, report: &mut FieldReport) {
                 "a fixed-wing drone needs an inertia, and this body is a point",
                 "the Aerosonde has `inertia: Tensor(xx_kg_m2: 0.8244, yy_kg_m2: 1.135, zz_kg_m2: 1.759, \
                  xz_kg_m2: 0.1204)`",
+            );
+        }
+        let has_attitude = |pose: &Pose| pose.attitude != AttitudeSpec::Upright;
+        if entity.get::<Pose>().is_some_and(has_attitude) {
+            report.add(
+                &format!("{}.attitude", entity.path::<Pose>()),
+                "a fixed-wing drone starts in the attitude of its trim",
+                "leave it out; airspeed and course stand in `FixedWing.start`",
             );
         }
         let is_held = |tether: &Tether| tether.from.0 == entity.name || tether.to.0 == entity.name;
