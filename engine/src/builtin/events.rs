@@ -4,6 +4,7 @@
 use aerobot_components::body::Body;
 use aerobot_components::docking::Latch;
 use aerobot_components::events::{Action, Condition, EventSpec};
+use aerobot_components::fixed_wing::FixedWing;
 use aerobot_components::scene_component::FieldReport;
 use aerobot_components::segment::Tension;
 use aerobot_components::state::{Air, Position, Velocity};
@@ -127,6 +128,8 @@ pub(crate) fn margin(world: &World, condition: &Condition) -> Option<f64> {
         } => {
             let body = entity(name)?;
             let wind = world.get::<Air>(body)?.velocity_m_s;
+            let drone = world.get::<FixedWing>(body);
+            let wind = drone.map_or(wind, |drone| drone.wind.velocity_m_s(wind));
             Some((world.get::<Velocity>(body)?.0 - wind).length() - airspeed_m_s)
         }
     }
