@@ -165,8 +165,9 @@ fn axis(axis: &Axis, decades: f64) -> Map<String, Value> {
         let places: Vec<usize> = (0..axis.names.len()).collect();
         out.insert("tickvals".into(), json!(places));
         out.insert("ticktext".into(), json!(axis.names));
-        out.insert("automargin".into(), json!(true));
     }
+    // A wide number of a tick moves the axis, and is not cut off.
+    out.insert("automargin".into(), json!(true));
     out
 }
 
