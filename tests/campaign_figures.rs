@@ -249,7 +249,7 @@ fn the_best_of_a_search_so_far_ends_at_the_best() {
     let so_far = record.best_so_far();
     assert_eq!(so_far.last().unwrap().1, best.objective());
     assert!(so_far.windows(2).all(|pair| pair[0].1 <= pair[1].1));
-    let figure = record.figure();
+    let figure = record.search();
     let [objective, away] = &figure.panels[..] else {
         panic!("{} panels", figure.panels.len());
     };

@@ -9,7 +9,7 @@ use aerobot_report::animation::Animation;
 use aerobot_report::export::vtk::SeriesPlace;
 use aerobot_report::export::{gltf, vtk};
 use aerobot_report::record::Record;
-use clap::Args;
+use clap::{ArgGroup, Args};
 
 use super::{REFUSED, complain, finding, say};
 
@@ -19,11 +19,12 @@ const OTHER_VTK_FILES: [&str; 9] = [
 ];
 
 #[derive(Args)]
+#[command(group(ArgGroup::new("target").required(true).multiple(true).args(["gltf", "vtk"])))]
 pub(super) struct ExportArguments {
     /// The folder of a run.
     run: PathBuf,
     /// File for glTF 2.0, `.glb`: for Blender and viewers.
-    #[arg(long, value_name = "FILE.glb", required_unless_present = "vtk")]
+    #[arg(long, value_name = "FILE.glb")]
     gltf: Option<PathBuf>,
     /// Collection for ParaView, `.pvd`, with its frames in the folder of the same name; or a folder for both.
     #[arg(long, value_name = "FILE_OR_FOLDER")]

@@ -134,7 +134,7 @@ struct RunArguments {
 
 #[derive(Args)]
 struct ReportArguments {
-    /// Folders of the runs.
+    /// Folders of runs, or that of a campaign or of a design search.
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
     /// File for the report; `report.html` in the first folder unless given.
@@ -150,13 +150,13 @@ struct ReportArguments {
 
 #[derive(Args)]
 struct PlotArguments {
-    /// Folder of the run, of the campaign, or of a table.
+    /// Folder of the run, of the campaign, of the design search, or of a table.
     #[arg(value_name = "DIR")]
     folder: Option<PathBuf>,
     /// What to draw.
     kind: Option<String>,
     /// List the kinds of figures and do nothing else.
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["folder", "kind", "with", "out"])]
     list: bool,
     /// Folder of another run whose lines are drawn beside those of the first.
     #[arg(long, value_name = "DIR")]

@@ -1,8 +1,9 @@
 //! `aerobot plot`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use aerobot_engine::campaign::manifest::Study;
 use aerobot_engine::plugin::Simulator;
 use aerobot_engine::scene::source::nearest;
 use aerobot_engine::trim::scene_file::check_target;
@@ -36,8 +37,22 @@ pub(super) fn plot(simulator: &Simulator, arguments: &PlotArguments) -> ExitCode
     }
 }
 
-/// The figure of a design search, and what it shows.
-const SEARCH: (&str, &str) = ("search", "of a design search: the best value so far");
+/// A figure of a design search: its name, what it shows, and what makes it.
+type SearchFigure = (&'static str, &'static str, fn(&SearchRecord) -> Figure);
+
+/// The figures of a design search.
+const SEARCH: [SearchFigure; 2] = [
+    (
+        "search",
+        "of a design search: the best value so far",
+        SearchRecord::search,
+    ),
+    (
+        "search-variables",
+        "of a design search: the objective over each variable",
+        SearchRecord::variables,
+    ),
+];
 
 /// Names of all kinds and what they show.
 fn kinds() -> Vec<(&'static str, &'static str)> {
@@ -50,7 +65,7 @@ fn kinds() -> Vec<(&'static str, &'static str)> {
         .iter()
         .map(|kind| (kind.name, kind.about));
     runs.chain(campaigns)
-        .chain([SEARCH])
+        .chain(SEARCH.map(|(name, about, _)| (name, about)))
         .chain(tables)
         .collect()
 }
@@ -67,6 +82,13 @@ fn write(simulator: &Simulator, arguments: &PlotArguments) -> Result<PathBuf, St
         .out
         .clone()
         .unwrap_or_else(|| folder.join(format!("{kind}.svg")));
+    if file.extension().is_none_or(|extension| extension != "svg") {
+        return Err(format!(
+            "error: `{}` does not end in `.svg`\n  = help: figures are written as SVG; `rsvg-convert` and Inkscape \
+             make PNG and PDF of it",
+            file.display()
+        ));
+    }
     let figure = figure(simulator, arguments, folder, kind)?;
     // A drawing of the same folder may be made anew.
     check_target(&file, arguments.force || arguments.out.is_none())
@@ -104,9 +126,9 @@ fn figure(
         let record = CampaignRecord::read(folder).map_err(|error| error.to_string())?;
         return record.figure(kind).map_err(nothing);
     }
-    if kind == SEARCH.0 {
+    if let Some((_, _, make)) = SEARCH.into_iter().find(|(name, ..)| *name == kind) {
         let record = SearchRecord::read(folder).map_err(|error| error.to_string())?;
-        return Ok(record.figure());
+        return Ok(make(&record));
     }
     let Some(kind) = run_figures::RunFigureKind::of(kind) else {
         let near = nearest(kind, kinds().into_iter().map(|(name, _)| name));
@@ -119,10 +141,33 @@ fn figure(
         ));
     };
     let folders = [folder].into_iter().chain(&arguments.with);
+    for folder in folders.clone() {
+        check_is_run(folder, kind.name)?;
+    }
     let records = folders
         .map(|folder| Record::read(simulator, folder))
         .collect::<Result<Vec<_>, _>>()
         .map_err(|error| error.to_string())?;
     let references: Vec<&Record> = records.iter().collect();
     kind.figure(simulator, &references).map_err(nothing)
+}
+
+/// Refuses what has figures of its own.
+fn check_is_run(folder: &Path, kind: &str) -> Result<(), String> {
+    let Some(study) = Study::of_folder(folder) else {
+        return Ok(());
+    };
+    let own: Vec<&str> = match study {
+        Study::Campaign => CampaignFigure::ALL.map(CampaignFigure::name).into(),
+        Study::DesignSearch => SEARCH.map(|(name, ..)| name).into(),
+    };
+    Err(format!(
+        "error: `{}` is the folder of a {}, and `{kind}` is a figure of a run\n  = help: it has the figures {}",
+        folder.display(),
+        study.word(),
+        own.iter()
+            .map(|name| format!("`{name}`"))
+            .collect::<Vec<_>>()
+            .join(", ")
+    ))
 }

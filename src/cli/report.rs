@@ -4,12 +4,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use aerobot_engine::campaign::manifest::MANIFEST;
+use aerobot_engine::campaign::manifest::Study;
 use aerobot_engine::campaign::results::KEPT;
 use aerobot_engine::plugin::Simulator;
-use aerobot_report::campaign::CampaignRecord;
+use aerobot_report::campaign::{CampaignRecord, SearchRecord};
 use aerobot_report::page::campaign_page::campaign_page;
 use aerobot_report::page::run_page::run_page;
+use aerobot_report::page::search_page::search_page;
 use aerobot_report::page::{Page, is_page};
 use aerobot_report::record::Record;
 
@@ -91,15 +92,21 @@ fn check_target(file: &Path, force: bool) -> Result<(), String> {
 }
 
 fn page(simulator: &Simulator, folders: &[PathBuf]) -> Result<Page, String> {
-    if let Some(campaign) = folders.iter().find(|folder| is_campaign(folder)) {
-        return match folders {
-            [_] => of_campaign(simulator, campaign),
+    let studies = folders
+        .iter()
+        .filter_map(|folder| Some((folder, Study::of_folder(folder)?)));
+    if let Some((folder, study)) = studies.into_iter().next() {
+        return match (folders, study) {
+            ([_], Study::Campaign) => of_campaign(simulator, folder),
+            ([_], Study::DesignSearch) => of_search(folder),
             _ => Err(format!(
-                "error: `{}` is a campaign, and a report has one\n  = help: name it alone",
-                campaign.display()
+                "error: `{}` is the folder of a {}, and a report has one\n  = help: name it alone",
+                folder.display(),
+                study.word()
             )),
         };
     }
+    check_once(folders)?;
     let records = folders
         .iter()
         .map(|folder| Record::read(simulator, folder))
@@ -108,9 +115,26 @@ fn page(simulator: &Simulator, folders: &[PathBuf]) -> Result<Page, String> {
     Ok(run_page(simulator, &with_distinct_labels(records, folders)))
 }
 
-/// Whether a folder is that of a campaign.
-pub(super) fn is_campaign(folder: &Path) -> bool {
-    folder.join(MANIFEST).is_file()
+/// Refuses a run that is named twice: its lines would lie under each other.
+fn check_once(folders: &[PathBuf]) -> Result<(), String> {
+    let mut found = Vec::new();
+    for folder in folders {
+        let place = folder.canonicalize().unwrap_or_else(|_| folder.clone());
+        if found.contains(&place) {
+            return Err(format!(
+                "error: `{}` is named twice\n  = help: a report of several runs lays each over the others",
+                folder.display()
+            ));
+        }
+        found.push(place);
+    }
+    Ok(())
+}
+
+/// The page of a design search.
+fn of_search(folder: &Path) -> Result<Page, String> {
+    let record = SearchRecord::read(folder).map_err(|error| error.to_string())?;
+    Ok(search_page(&record))
 }
 
 /// The page of a campaign; runs that it has kept get reports of their own.

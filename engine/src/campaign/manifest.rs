@@ -89,6 +89,17 @@ impl Study {
         }
     }
 
+    /// Whose folder this is, by its manifest; nothing if there is none. One that is damaged is a campaign's.
+    #[must_use]
+    pub fn of_folder(folder: &Path) -> Option<Self> {
+        let text = fs::read_to_string(folder.join(MANIFEST)).ok()?;
+        let is_search = Self::DesignSearch.parse(&text).is_ok();
+        Some(match is_search {
+            true => Self::DesignSearch,
+            false => Self::Campaign,
+        })
+    }
+
     fn parse(self, text: &str) -> serde_json::Result<Manifest> {
         match self {
             Self::Campaign => serde_json::from_str(text),

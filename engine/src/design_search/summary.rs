@@ -1,8 +1,9 @@
 //! `summary.json` of a search, and the same for the terminal.
 
+use std::borrow::Cow;
 use std::fmt::Write as _;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::definition::DesignSearch;
 use super::evaluation::Evaluation;
@@ -12,7 +13,7 @@ use crate::recording::number::number_text;
 use crate::recording::summary::VERSION;
 
 /// The summary of a search.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct SearchSummary {
     /// Version of the program.
     pub version: String,
@@ -41,7 +42,7 @@ pub struct SearchSummary {
 }
 
 /// A design in a summary.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct DesignSummary {
     /// Number of its evaluation.
     pub evaluation: u64,
@@ -56,10 +57,10 @@ pub struct DesignSummary {
 }
 
 /// The objective of a design.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct ObjectiveSummary {
     /// `minimise` or `maximise`.
-    pub goal: &'static str,
+    pub goal: Cow<'static, str>,
     /// Its value.
     pub value: f64,
     /// Its unit; empty if it has none.
@@ -67,18 +68,18 @@ pub struct ObjectiveSummary {
 }
 
 /// A variable of a design.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct VariableSummary {
     /// Its name.
     pub name: String,
     /// Its value.
     pub value: f64,
     /// `lower` or `upper` if it is at a bound.
-    pub at_bound: Option<&'static str>,
+    pub at_bound: Option<Cow<'static, str>>,
 }
 
 /// A field that a design sets.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct FieldSummary {
     /// Its path.
     pub path: String,
@@ -87,7 +88,7 @@ pub struct FieldSummary {
 }
 
 /// What a design makes of a constraint.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct ConstraintSummary {
     /// Its name.
     pub name: String,
@@ -133,8 +134,8 @@ fn design_summary(search: &DesignSearch, of: &Evaluation) -> Option<DesignSummar
         evaluation: of.index,
         objective: ObjectiveSummary {
             goal: match specification.objective {
-                Objective::Minimise(_) => "minimise",
-                Objective::Maximise(_) => "maximise",
+                Objective::Minimise(_) => "minimise".into(),
+                Objective::Maximise(_) => "maximise".into(),
             },
             value: found.objective,
             unit: specification.objective.measure().unit(specification),
@@ -144,9 +145,9 @@ fn design_summary(search: &DesignSearch, of: &Evaluation) -> Option<DesignSummar
                 name: name.clone(),
                 value: *value,
                 at_bound: if *value == variable.from {
-                    Some("lower")
+                    Some("lower".into())
                 } else if *value == variable.to {
-                    Some("upper")
+                    Some("upper".into())
                 } else {
                     None
                 },
@@ -244,7 +245,7 @@ impl DesignSummary {
     fn describe(&self, text: &mut String) {
         let objective = &self.objective;
         let mut rows = vec![[
-            objective.goal.to_owned(),
+            objective.goal.to_string(),
             format!("{} {}", short(objective.value), objective.unit)
                 .trim_end()
                 .to_owned(),
@@ -253,6 +254,7 @@ impl DesignSummary {
         for variable in &self.variables {
             let bound = variable
                 .at_bound
+                .as_ref()
                 .map(|bound| format!("at its {bound} bound"));
             let bound = bound.unwrap_or_default();
             rows.push([variable.name.clone(), short(variable.value), bound]);

@@ -17,5 +17,5 @@ mod tables;
 pub use figures::covariance_ellipse::{Spread, share_within};
 pub use kind::CampaignFigure;
 pub use record::{CampaignRecord, FailedRun};
-pub use search::{EvaluatedDesign, Limit, SearchRecord};
+pub use search::{EvaluatedDesign, SearchRecord};
 pub use tables::{Envelope, RunRows};

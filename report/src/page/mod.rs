@@ -5,6 +5,7 @@ pub mod campaign_page;
 mod document;
 mod escape;
 pub mod run_page;
+pub mod search_page;
 pub mod view;
 
 pub use blocks::{Block, Row, Section, TextTable};

@@ -45,7 +45,9 @@ pub enum RecordError {
         missing: &'static str,
     },
     /// A file cannot be read.
-    #[error("error: cannot read `{file}`: {reason}")]
+    #[error(
+        "error: cannot read `{file}`: {reason}\n  = help: it is not as the run wrote it; run the scene again"
+    )]
     Unreadable {
         /// The file.
         file: PathBuf,

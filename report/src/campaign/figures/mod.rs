@@ -1,9 +1,10 @@
-//! The figures of a campaign.
+//! The figures of a campaign, and of a design search.
 
 pub(super) mod convergence;
 pub(super) mod covariance_ellipse;
 pub(super) mod envelope;
 pub(super) mod histogram;
+pub(super) mod search;
 pub(super) mod tornado;
 
 use aerobot_engine::campaign::quantity::unit_symbol;
