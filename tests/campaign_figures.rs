@@ -270,4 +270,51 @@ fn the_best_of_a_search_so_far_ends_at_the_best() {
             .iter()
             .all(|value| *value > 450.0)
     );
+    let [thrown] = &record.variables().panels[..] else {
+        panic!("one variable, one panel")
+    };
+    let label = "entities.ball.Motion.velocity_m_s.0 [m/s]";
+    assert_eq!(thrown.x.label, label);
+    let points = thrown.series.iter().flat_map(|of| of.x.iter().zip(&of.y));
+    let mut count = 0;
+    for (speed_m_s, far_m) in points {
+        assert!((far_m - 10.0 * speed_m_s).abs() < 1e-9);
+        count += 1;
+    }
+    assert_eq!(count, record.evaluations.len());
+}
+
+/// A folder of a search has a report and figures of its own, and says which.
+#[test]
+fn a_search_has_a_report_and_says_which_figures_it_has() {
+    let scratch = Scratch::folder();
+    let body = r#"
+    variables: {"entities.ball.Motion.velocity_m_s.0": (from: 1, to: 100)},
+    objective: Minimise(Value("far_x_m")),
+    constraints: {"away_x_m": (of: Value("far_x_m"), at_least: 450)},
+    metrics: {"far_x_m": Final(entity: "ball", channel: "x_m")},
+    search: (sample: 4, starts: 1),
+"#;
+    let best = optimised(&scratch, THROW, body);
+    let out = scratch.path("out");
+    let report = aerobot(&["report", &out]);
+    assert_eq!(report.status.code(), Some(0), "{}", text(&report.stderr));
+    let page = fs::read_to_string(format!("{out}/report.html")).unwrap();
+    assert!(page.contains("The best design") && page.contains(&best.objective().to_string()));
+    assert!(page.contains("search-variables") && page.contains("Every design has a value."));
+
+    let refused = aerobot(&["plot", &out, "displacement"]);
+    assert_eq!(refused.status.code(), Some(2));
+    let told = text(&refused.stderr);
+    assert!(
+        told.contains("a design search") && told.contains("`search`, `search-variables`"),
+        "{told}"
+    );
+    let drawn = aerobot(&["plot", &out, "search-variables"]);
+    assert_eq!(drawn.status.code(), Some(0), "{}", text(&drawn.stderr));
+    let beside = aerobot(&["report", &out, &out]);
+    assert_eq!(beside.status.code(), Some(2));
+    let png = format!("{out}/figure.png");
+    let refused = aerobot(&["plot", &out, "search", "--out", &png]);
+    assert!(refused.status.code() == Some(2) && text(&refused.stderr).contains("`.svg`"));
 }

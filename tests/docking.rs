@@ -71,7 +71,7 @@ fn errors_of_navigation_follow_from_the_seed() {
 }
 
 /// A port on an anchor that moves at `velocity`, 40 m from the drone, without a sensor in the way.
-fn chase(velocity: &str, rotorcraft: &str, docking: &str) -> (MemorySink, Summary) {
+fn chase(velocity: &str, rotorcraft: &str, docking: &str, latch: &str) -> (MemorySink, Summary) {
     let drone = drone(rotorcraft, POSE);
     let text = format!(
         r#"(
@@ -85,7 +85,7 @@ fn chase(velocity: &str, rotorcraft: &str, docking: &str) -> (MemorySink, Summar
         "drone": (
             {drone}
             DockingPort: (at_m: (0.5, 0, 0), axis: (1, 0, 0)),
-            Latch: (to: "port"),
+            Latch: (to: "port", {latch}),
             Docking: ({docking}),
         ),
     }},
@@ -98,7 +98,7 @@ fn chase(velocity: &str, rotorcraft: &str, docking: &str) -> (MemorySink, Summar
 /// What can be caught is caught, and held by what moves it.
 #[test]
 fn a_steady_port_is_reached_and_holds_the_drone() {
-    let (results, summary) = chase("(2, 1, 0)", "", "");
+    let (results, summary) = chase("(2, 1, 0)", "", "", "");
     let docked_s = time_of(&summary, "docked");
     assert!(docked_s < 60.0, "{docked_s}");
     let end = results.frames.last().unwrap();
@@ -115,31 +115,47 @@ fn a_steady_port_is_reached_and_holds_the_drone() {
 }
 
 /// What cannot be reached ends as a phase and as an event with its reason, a sentence in the summary, and numbers
-/// that are finite: a port that is too fast, a drone that is too weak, a port out of sight, and a latch that cannot
-/// close because the port is slower to accept it than the drone is to arrive.
+/// that are finite: a port that is too fast, a drone that is too weak, a port out of sight, and a latch that has to be
+/// nearer at one of its looks than a drone comes.
 #[test]
 fn what_cannot_be_reached_is_told() {
     let seeing = "navigation: Measured(period_s: 0.05, delay_s: 0.05, noise_m_per_m: 0.005, least_noise_m: 0.01, \
                   most_noise_m: 0.5, range_m: 30, observer_rad_s: 3, observer_near_m: 30)";
-    for (velocity, rotorcraft, docking, kind, words) in [
-        ("(40, 0, 0)", "", "", "unreachable: too fast", "40.0 m/s"),
+    for (velocity, rotorcraft, docking, latch, kind, words) in [
+        (
+            "(40, 0, 0)",
+            "",
+            "",
+            "",
+            "unreachable: too fast",
+            "40.0 m/s",
+        ),
         (
             "(0, 0, 0)",
             "thrust_coefficient: 0.002",
             "",
+            "",
             "unreachable: out of thrust",
             "give 36.4 N",
         ),
-        ("(0, 0, 0)", "", seeing, "unreachable: not seen", "range"),
         (
             "(0, 0, 0)",
             "",
-            "closing_speed_m_s: 1.5, attempts: 2",
+            seeing,
+            "",
+            "unreachable: not seen",
+            "range",
+        ),
+        (
+            "(0, 0, 0)",
+            "",
+            "attempts: 2",
+            "distance_m: 1e-5",
             "unreachable: approaches missed",
             "2 approaches",
         ),
     ] {
-        let (results, summary) = chase(velocity, rotorcraft, docking);
+        let (results, summary) = chase(velocity, rotorcraft, docking, latch);
         assert!(time_of(&summary, kind) < 120.0);
         assert!(
             matches!(&summary.warnings[..], [told] if told.contains(words) && told.contains("`port`")),

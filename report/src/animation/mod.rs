@@ -100,6 +100,13 @@ impl Animation {
         }
     }
 
+    /// Whether there is nothing to see: neither a body nor a node.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        let mut points = self.tethers.iter().flat_map(|tether| &tether.points_m);
+        self.bodies.is_empty() && points.all(Vec::is_empty)
+    }
+
     /// Least and greatest tension of any segment in any frame, N; nothing without tethers.
     #[must_use]
     pub fn tension_range_n(&self) -> Option<(f64, f64)> {

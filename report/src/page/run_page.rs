@@ -38,7 +38,7 @@ pub fn run_page(simulator: &Simulator, records: &[Record]) -> Page {
     }
 }
 
-/// The section that plays.
+/// The section that plays, or why there is nothing to play.
 #[must_use]
 pub fn view(records: &[Record]) -> Section {
     let runs = records.iter().map(|record| {
@@ -47,7 +47,15 @@ pub fn view(records: &[Record]) -> Section {
             Animation::of(record, most_frames(record)),
         )
     });
-    Section::new("In motion", vec![Block::View(runs.collect())])
+    let runs: Vec<(String, Animation)> = runs.collect();
+    let block = match runs.iter().all(|(_, animation)| animation.is_empty()) {
+        true => Block::Text(
+            "There is nothing to play: neither bodies nor nodes were recorded (`run.record`)."
+                .to_owned(),
+        ),
+        false => Block::View(runs),
+    };
+    Section::new("In motion", vec![block])
 }
 
 fn most_frames(record: &Record) -> usize {

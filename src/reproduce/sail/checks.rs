@@ -84,6 +84,7 @@ pub(super) fn checks(found: &SailStudy) -> Vec<Check> {
                 .as_in_paper("above 0 %", percent > 0.0),
         );
     }
+    checks.extend(found.separate.checks());
     checks
 }
 

@@ -23,7 +23,7 @@ pub(super) fn figures(found: &SailStudy) -> Vec<Figure> {
         .fold(0.0, f64::max);
     let target = [(0.0, found.target_m), (end_s, found.target_m)];
     balloon.push(Series::line("target", target).with_tone(7));
-    vec![over_time(
+    let response = over_time(
         "sail-response",
         "Way to the commanded place across the wind (figures 17 to 19)",
         "",
@@ -32,5 +32,6 @@ pub(super) fn figures(found: &SailStudy) -> Vec<Figure> {
             panel("y of the sail [m]", lines(&|row| row.2)),
             panel("rudder [deg]", lines(&|row| row.3.to_degrees())),
         ],
-    )]
+    );
+    vec![response, found.separate.figure()]
 }

@@ -4,6 +4,7 @@
 mod checks;
 mod figures;
 mod report;
+mod separate_program;
 
 use std::path::Path;
 
@@ -15,6 +16,7 @@ use aerobot_engine::scene::{Scene, SceneError};
 use aerobot_systems::forces::sail::{least_rudder_area_m2, yaw_stiffness_m3_rad};
 
 use super::{Case, Report, ReproduceError, Settings};
+pub use separate_program::{RUDDER_STEP, SeparateProgram};
 
 /// The scene of the case.
 const SCENE: &str = include_str!("../../../scenes/paper/sail_trajectory.ron");
@@ -86,6 +88,8 @@ pub struct SailStudy {
     pub target_m: f64,
     /// The flights, with what is varied.
     pub flights: Vec<(&'static str, Response)>,
+    /// Flights that a separate program has computed too.
+    pub separate: SeparateProgram,
 }
 
 /// How a sail answers to its rudder.
@@ -130,6 +134,7 @@ pub fn study(
         trims: trims(&plain)?,
         target_m: target_m(&plain)?,
         flights: Vec::new(),
+        separate: SeparateProgram::fly(simulator)?,
     };
     let count = VARIANTS.len() as f64;
     for (index, (words, overrides)) in VARIANTS.into_iter().enumerate() {
@@ -241,13 +246,7 @@ fn told(rows: Vec<(f64, f64, f64, f64)>, target_m: f64) -> Response {
         .iter()
         .map(|row| row.1)
         .fold(f64::NEG_INFINITY, f64::max);
-    let outside = rows
-        .iter()
-        .rposition(|row| (row.1 - target_m).abs() > BAND_M);
-    let arrived = match outside {
-        Some(last) => rows.get(last + 1).map(|row| row.0),
-        None => Some(0.0),
-    };
+    let balloon: Vec<(f64, f64)> = rows.iter().map(|row| (row.0, row.1)).collect();
     let upward: Vec<f64> = rows
         .windows(2)
         .filter(|pair| pair[0].1 < target_m && pair[1].1 >= target_m)
@@ -263,9 +262,20 @@ fn told(rows: Vec<(f64, f64, f64, f64)>, target_m: f64) -> Response {
     };
     Response {
         overshoot: most / target_m - 1.0,
-        arrived_s: arrived,
+        arrived_s: arrival_s(&balloon, target_m),
         period_s,
         rows,
         stopped: None,
+    }
+}
+
+/// Time (s) from which on y of the balloon, at times, stays within [`BAND_M`] of the target, if it does.
+fn arrival_s(balloon: &[(f64, f64)], target_m: f64) -> Option<f64> {
+    let outside = balloon
+        .iter()
+        .rposition(|(_, y_m)| (y_m - target_m).abs() > BAND_M);
+    match outside {
+        Some(last) => balloon.get(last + 1).map(|row| row.0),
+        None => Some(0.0),
     }
 }
