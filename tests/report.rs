@@ -226,7 +226,8 @@ fn what_is_no_run_is_refused() {
         &["is not the folder of a run"],
     );
     let good = folder.path("run");
-    run(CHAIN, &good, &["--until", "1"]);
+    let standard = ["--until", "1", "--set", "run.record.channels=Standard"];
+    run(CHAIN, &good, &standard);
     refused(
         &["plot", &good, "altitud"],
         &["no kind of figure `altitud`", "did you mean `altitude`?"],
@@ -334,6 +335,32 @@ fn rows_out_of_order_are_refused_and_tables_that_were_cut_are_told() {
     assert!(page.contains("the table `states` of") && page.contains("has been cut"));
     fs::write(&file, "").unwrap();
     assert_eq!(aerobot(&["report", folder.text()]).status.code(), Some(2));
+}
+
+/// Rows of what is not in the scene are no rows of its run; tables in Parquet are whole or are not read.
+#[test]
+fn tables_of_another_run_and_unfinished_ones_are_told() {
+    let refused = |folder: &Scratch, reason: &str| {
+        let report = aerobot(&["report", folder.text()]);
+        let said = text(&report.stderr);
+        assert_eq!(report.status.code(), Some(2), "{said}");
+        assert!(said.contains(reason), "{said}");
+    };
+    let folder = Scratch::new();
+    run(CHAIN, folder.text(), &["--until", "1"]);
+    let file = folder.path("states.csv");
+    let whole = fs::read_to_string(&file).unwrap();
+    fs::write(&file, whole.replace(",camera,", ",kamera,")).unwrap();
+    refused(&folder, "states.csv`: its entity `kamera` is not in");
+    let folder = Scratch::new();
+    run(
+        CHAIN,
+        folder.text(),
+        &["--until", "1", "--format", "parquet"],
+    );
+    assert!(aerobot(&["report", folder.text()]).status.success());
+    fs::remove_file(folder.path("summary.json")).unwrap();
+    refused(&folder, "was killed or is under way");
 }
 
 /// Where nodes were not recorded there is no shape to show, and where bodies were not none of theirs.

@@ -113,17 +113,16 @@ fn detrended(values: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Peaks of at least a part of the largest amplitude, the largest first: points that are larger than the two on either
-/// side, placed by the parabola through the logarithms of three.
+/// Peaks of at least a part of the largest amplitude, the largest first: points that are larger than
+/// their neighbours, placed by the parabola through the logarithms of three.
 #[must_use]
 pub fn peaks(spectrum: &Spectrum, least_part: f64) -> Vec<Peak> {
     let amplitudes = &spectrum.amplitudes;
     let least = least_part * spectrum.largest();
-    let mut found: Vec<Peak> = (2..amplitudes.len().saturating_sub(2))
+    let mut found: Vec<Peak> = (2..amplitudes.len().saturating_sub(1))
         .filter(|index| {
             let here = amplitudes[*index];
-            let beside = [index - 2, index - 1, index + 1, index + 2];
-            here > least && beside.iter().all(|other| amplitudes[*other] < here)
+            here > least && amplitudes[index - 1] < here && amplitudes[index + 1] <= here
         })
         .map(|index| between_bins(spectrum, index))
         .collect();

@@ -32,10 +32,26 @@ impl Record {
         let scene = simulator.load(&folder.join("scene.ron"), &[])?;
         let geometry = simulator.geometry(&scene)?;
         let mut tables = Tables::default();
-        if folder.join("states.parquet").is_file() {
-            parquet_file::read(folder, &mut tables)?;
-        } else {
-            csv::read(folder, &mut tables)?;
+        let states = match is_there("states.parquet") {
+            true if !is_there("summary.json") => {
+                return Err(RecordError::Unfinished {
+                    folder: folder.to_owned(),
+                });
+            }
+            true => {
+                parquet_file::read(folder, &mut tables)?;
+                "states.parquet"
+            }
+            false => {
+                csv::read(folder, &mut tables)?;
+                "states.csv"
+            }
+        };
+        if let Some(stranger) = stranger(&scene, &tables) {
+            return Err(RecordError::Unreadable {
+                file: folder.join(states),
+                reason: format!("its entity `{stranger}` is not in `scene.ron`"),
+            });
         }
         let timing = folder.join("timing.json");
         let label = folder.file_name().unwrap_or(folder.as_os_str());
@@ -56,6 +72,16 @@ impl Record {
             tables,
         })
     }
+}
+
+/// An entity of the states that the scene does not have; nodes are named after their tether.
+fn stranger<'a>(scene: &Scene, tables: &'a Tables) -> Option<&'a str> {
+    let is_known = |name: &str| {
+        let ends = name.match_indices('/').map(|(place, _)| &name[..place]);
+        scene.entity(name).is_some() || ends.into_iter().any(|own| scene.entity(own).is_some())
+    };
+    let mut names = tables.states.iter().map(|track| track.name.as_str());
+    names.find(|name| !is_known(name))
 }
 
 /// What can be said of a run that has not come to its end.

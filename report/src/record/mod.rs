@@ -44,6 +44,15 @@ pub enum RecordError {
         /// What is missing.
         missing: &'static str,
     },
+    /// A run in Parquet that has not come to its end.
+    #[error(
+        "error: the run in `{folder}` was killed or is under way, and its tables in Parquet can be read once a run is \
+         over\n  = help: a run in CSV can be read as far as it got (`--format csv`)"
+    )]
+    Unfinished {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// A file cannot be read.
     #[error(
         "error: cannot read `{file}`: {reason}\n  = help: it is not as the run wrote it; run the scene again"
