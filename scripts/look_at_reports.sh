@@ -1,6 +1,7 @@
 #!/bin/sh
 # Runs some scenes, writes a page for each, tests the pages in Chromium with the network cut, and takes pictures
-# of them to look at; their glTF files go through the Khronos validator. Needs Node 20, `npm ci` in tests/browser, and Chromium ($CHROMIUM, or on the path).
+# of them to look at; their glTF files go through the Khronos validator. Needs Node 20, `npm ci` in tests/browser, and
+# Chromium ($CHROMIUM, or on the path).
 #
 #     scripts/look_at_reports.sh FOLDER [SCENE...]
 #
@@ -38,6 +39,16 @@ if [ $heavy = yes ]; then
         --quiet --set entities.tether.Tether.nodes=200 --set run.output_every_s=0.04 --set 'run.integrator=Auto()'
     cp "$folder/runs/two_hundred_nodes/report.html" "$folder/pages/two_hundred_nodes.html"
     ls -l "$folder/pages/two_hundred_nodes.html"
+    # Pages without a view: the paper's cases, a campaign, a design search.
+    rm -rf "$folder/runs/campaign" "$folder/runs/search"
+    "$aerobot" reproduce --out "$folder/runs/reproduce" --force --quiet
+    "$aerobot" campaign run scenes/campaigns/gusts_1000.ron --out "$folder/runs/campaign" --quiet
+    "$aerobot" optimise scenes/campaigns/lightest_tether.ron --out "$folder/runs/search" --quiet
+    "$aerobot" report "$folder/runs/campaign" --quiet
+    "$aerobot" report "$folder/runs/search" --quiet
+    for name in reproduce campaign search; do
+        cp "$folder/runs/$name/report.html" "$folder/pages/$name.html"
+    done
 fi
 cargo run --quiet -p aerobot-report --example yawed_page "$folder/known.html"
 

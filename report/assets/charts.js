@@ -10,8 +10,8 @@
   };
   const axis = { showline: true, linecolor: "#777", gridcolor: "#eceef0", zeroline: false, ticks: "outside", mirror: true };
   const charts = [];
-  // The stretch of time that all show; null: all of it.
-  let range = null;
+  // The stretch of time that all charts of a group show; none: all of it.
+  const ranges = new Map();
   let time_s = null;
   let is_linking = false;
 
@@ -21,7 +21,8 @@
       if (/^[xy]axis/.test(key)) spec.layout[key] = { ...axis, ...spec.layout[key] };
     }
     Object.assign(spec.layout, style);
-    const chart = { figure, plot: figure.querySelector(".plot"), spec, drawn: false, is_seen: false, cursors: [] };
+    const group = figure.closest("[data-zoom=section] > section");
+    const chart = { figure, group, plot: figure.querySelector(".plot"), spec, drawn: false, is_seen: false, cursors: [] };
     figure.chart = chart;
     return chart;
   }
@@ -29,6 +30,7 @@
   function draw(chart) {
     if (chart.drawn) return;
     chart.drawn = true;
+    const range = ranges.get(chart.group);
     if (range) chart.spec.time_axes.forEach((name) => { chart.spec.layout[name].range = [...range]; });
     chart.ready = Plotly.newPlot(chart.plot, chart.spec.data, chart.spec.layout, config).then(() => {
       chart.plot.style.minHeight = "";
@@ -46,14 +48,15 @@
     });
   }
 
-  // What one time axis shows, all show.
+  // What one time axis shows, all of its group show.
   function link(source, change) {
     if (is_linking) return;
-    const found = changedRange(source, change);
-    if (found === undefined) return;
-    range = found;
+    const range = changedRange(source, change);
+    if (range === undefined) return;
+    ranges.set(source.group, range);
     is_linking = true;
-    const others = charts.filter((chart) => chart !== source && chart.drawn && chart.spec.time_axes.length > 0);
+    const others = charts.filter((chart) => (
+      chart !== source && chart.group === source.group && chart.drawn && chart.spec.time_axes.length > 0));
     const done = others.map((chart) => {
       const update = {};
       for (const name of chart.spec.time_axes) {
@@ -118,11 +121,12 @@
     }, { rootMargin: "500px" });
     charts.forEach((chart) => { watcher.observe(chart.figure); eyes.observe(chart.figure); });
     window.addEventListener("beforeprint", () => charts.forEach(draw));
-    // For scripts that look at a page: everything drawn, and what the time axes show.
+    // For scripts that look at a page: everything drawn, and what the time axes of the first group show.
     window.aerobotCharts = {
       drawAll: () => { charts.forEach(draw); return Promise.all(charts.map((chart) => chart.ready)); },
       names: () => charts.map((chart) => chart.figure.dataset.name),
       timeRanges: () => charts.filter((chart) => chart.drawn && chart.spec.time_axes.length)
+        .filter((chart, _, timed) => chart.group === timed[0].group)
         .map((chart) => [...chart.plot._fullLayout[chart.spec.time_axes[0]].range]),
     };
   }

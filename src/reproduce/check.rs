@@ -49,7 +49,10 @@ fn figures(number: f64) -> String {
         return "0".to_owned();
     }
     if !(1e-4..1e9).contains(&size) {
-        return format!("{number:.2e}");
+        let text = format!("{number:.2e}");
+        let (mantissa, power) = text.split_once('e').unwrap_or((&text, "0"));
+        let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.');
+        return format!("{mantissa}e{power}");
     }
     let decimals = (FIGURES - 1 - libm::floor(libm::log10(size)) as i32).max(0) as usize;
     let text = format!("{number:.decimals$}");
@@ -199,6 +202,15 @@ impl Check {
         self.independent.is_some() && !self.holds
     }
 
+    /// An answer as a reader has it: a number with its unit, words as they are.
+    #[must_use]
+    pub fn told(&self, answer: &Answer) -> String {
+        match answer {
+            Answer::Number(_) => format!("{answer} {}", self.unit).trim_end().to_owned(),
+            Answer::Words(words) => words.clone(),
+        }
+    }
+
     fn number(&self) -> Option<f64> {
         match self.ours {
             Answer::Number(number) => Some(number),
@@ -209,10 +221,9 @@ impl Check {
 
 impl fmt::Display for Check {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let number = |answer: &Answer| format!("{answer} {}", self.unit).trim_end().to_owned();
-        write!(formatter, "{}: {}", self.what, number(&self.ours))?;
+        write!(formatter, "{}: {}", self.what, self.told(&self.ours))?;
         if let Some(Independent { answer, source }) = &self.independent {
-            write!(formatter, "; {source}: {}", number(answer))?;
+            write!(formatter, "; {source}: {}", self.told(answer))?;
         }
         write!(formatter, "; asked for: {}", self.asked)
     }

@@ -18,6 +18,7 @@ pub fn page(cases: &[Finished]) -> Page {
                 Probes (IAC-24-A3,5,6): case by case what it shows, what we compute, and an answer from elsewhere."
             .to_owned(),
         sections,
+        zooms_by_section: true,
     }
 }
 
@@ -77,23 +78,23 @@ fn section(case: &Finished) -> Section {
     });
     blocks.push(Block::Text(format!("Time taken: {:.1} s.", case.wall_s)));
     blocks.push(Block::Command(format!("aerobot reproduce {}", case.name)));
-    Section::new(report.title.clone(), blocks)
+    Section::new(report.title.clone(), blocks).named(case.name)
 }
 
 fn checks(checks: &[Check]) -> TextTable {
-    let answer = |answer: Option<&Answer>, unit: &str| match answer {
-        Some(answer) => format!("{answer} {unit}").trim_end().to_owned(),
-        None => "-".to_owned(),
+    let told = |check: &Check, answer: Option<&Answer>| {
+        answer.map_or_else(|| "-".to_owned(), |answer| check.told(answer))
+    };
+    let independent = |check: &Check| {
+        let answer = check.independent.as_ref().map(|other| &other.answer);
+        told(check, answer)
     };
     let rows = checks.iter().map(|check| Row {
         fields: vec![
             check.what.clone(),
-            answer(check.paper.as_ref(), check.unit),
-            answer(Some(&check.ours), check.unit),
-            answer(
-                check.independent.as_ref().map(|other| &other.answer),
-                check.unit,
-            ),
+            told(check, check.paper.as_ref()),
+            check.told(&check.ours),
+            independent(check),
             check
                 .independent
                 .as_ref()

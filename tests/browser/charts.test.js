@@ -82,6 +82,17 @@ for (const file of files) {
       assert.deepEqual(cut, []);
     });
 
+    test('the name of an axis is no longer than its axis', async () => {
+      const long = await page.evaluate(() => [...document.querySelectorAll('figure.chart')].flatMap((figure) => {
+        const layout = figure.chart.plot._fullLayout;
+        return Object.keys(layout).filter((key) => /^yaxis\d*$/.test(key)).filter((key) => {
+          const name = figure.chart.plot.querySelector(`.${key.replace('axis', '')}title`);
+          return name && name.getBoundingClientRect().height > layout[key]._length + 8;
+        }).map((key) => `${figure.dataset.name}: ${layout[key].title.text}`);
+      }));
+      assert.deepEqual(long, []);
+    });
+
     test('a stretch of time that is dragged over in one chart is shown by all, a double click shows all of it', async () => {
       if (!panel) return;
       const whole = await ranges(page);

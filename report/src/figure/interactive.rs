@@ -13,7 +13,7 @@ const SQUARE_HEIGHT: f64 = 520.0;
 const MARGINS: f64 = 70.0;
 /// Height between panels, and what the name of an axis and a title add to it, pixels.
 const GAP: f64 = 26.0;
-const AXIS_NAME: f64 = 24.0;
+const AXIS_NAME: f64 = 32.0;
 const PANEL_TITLE: f64 = 14.0;
 
 impl Figure {
@@ -92,6 +92,13 @@ impl<'a> Drawing<'a> {
         let mut y = axis(&panel.y, decades(panel, |series| &series.y));
         y.insert("domain".into(), json!(domain));
         y.insert("anchor".into(), json!(format!("x{suffix}")));
+        y.insert(
+            "title".into(),
+            json!({"text": panel.y.lines().join("<br>"), "standoff": 8}),
+        );
+        if let Some(range) = least_width(panel) {
+            x.insert("range".into(), json!(range));
+        }
         if panel.equal_axes {
             y.insert("scaleanchor".into(), json!(format!("x{suffix}")));
             x.insert("constrain".into(), json!("domain"));
@@ -124,6 +131,26 @@ fn height(panel: &Panel) -> f64 {
     } else {
         PANEL_HEIGHT
     }
+}
+
+/// What the horizontal of equal axes shows where the data are narrow: half of what the vertical does.
+fn least_width(panel: &Panel) -> Option<[f64; 2]> {
+    if !panel.equal_axes || panel.x.range.is_some() {
+        return None;
+    }
+    let extent = |values: fn(&Series) -> &Vec<f64>| {
+        let finite = panel
+            .series
+            .iter()
+            .flat_map(values)
+            .filter(|v| v.is_finite());
+        finite.fold((f64::MAX, f64::MIN), |(low, high), value| {
+            (low.min(*value), high.max(*value))
+        })
+    };
+    let ((left, right), (low, high)) = (extent(|series| &series.x), extent(|series| &series.y));
+    let (middle, half) = (0.5 * (left + right), 0.25 * (high - low));
+    (right - left < 2.0 * half).then_some([middle - half, middle + half])
 }
 
 /// How many decades the positive numbers of a panel span.

@@ -119,7 +119,22 @@ pub struct Label {
     pub text: String,
 }
 
+/// Letters of a label that stand beside a panel in one line.
+const LINE: usize = 30;
+
 impl Axis {
+    /// The label in lines that are no longer than a panel is high: one, or two that are about as long.
+    #[must_use]
+    pub fn lines(&self) -> Vec<&str> {
+        let label = self.label.as_str();
+        let length = label.chars().count();
+        let from_middle = |(place, _): &(usize, &str)| place.abs_diff(label.len() / 2);
+        match label.match_indices(' ').min_by_key(from_middle) {
+            Some((place, _)) if length > LINE => vec![&label[..place], &label[place + 1..]],
+            _ => vec![label],
+        }
+    }
+
     /// A linear axis of what its series span.
     #[must_use]
     pub fn new(label: impl Into<String>) -> Self {

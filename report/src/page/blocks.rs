@@ -8,6 +8,8 @@ use crate::figure::Figure;
 pub struct Section {
     /// Its heading.
     pub title: String,
+    /// What links to it, where that is not its heading.
+    pub name: Option<String>,
     /// What it holds.
     pub blocks: Vec<Block>,
 }
@@ -87,7 +89,17 @@ impl Section {
     pub fn new(title: impl Into<String>, blocks: Vec<Block>) -> Self {
         Self {
             title: title.into(),
+            name: None,
             blocks,
+        }
+    }
+
+    /// With a shorter name for links to it.
+    #[must_use]
+    pub fn named(self, name: impl Into<String>) -> Self {
+        Self {
+            name: Some(name.into()),
+            ..self
         }
     }
 }

@@ -55,6 +55,7 @@ pub fn campaign_page(record: &CampaignRecord, kept: &[(String, String)]) -> Page
         title: summary.campaign.clone(),
         about: record.specification.about.clone(),
         sections,
+        zooms_by_section: false,
     }
 }
 

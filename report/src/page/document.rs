@@ -26,6 +26,8 @@ pub struct Page {
     pub about: String,
     /// Its sections.
     pub sections: Vec<Section>,
+    /// Whether sections are of different runs: their time axes are not zoomed together.
+    pub zooms_by_section: bool,
 }
 
 impl Page {
@@ -36,7 +38,8 @@ impl Page {
         let mut contents = String::new();
         for (index, section) in self.sections.iter().enumerate() {
             let title = text_in_html(&section.title);
-            let _ = writeln!(contents, "<a href=\"#s{index}\">{title}</a>");
+            let name = text_in_html(section.name.as_ref().unwrap_or(&section.title));
+            let _ = writeln!(contents, "<a href=\"#s{index}\">{name}</a>");
             let _ = writeln!(
                 body,
                 "<section class=\"part\" id=\"s{index}\">\n<h2>{title}</h2>"
@@ -65,9 +68,14 @@ impl Page {
              {GENERATOR}{version}\">\n\
              <link rel=\"icon\" href=\"data:,\">\n<title>{title}</title>\n<style>\n{styles}</style>\n</head>\n\
              <body>\n<header>\n<h1>{title}</h1>\n<p>{about}</p>\n</header>\n<nav>\n{contents}</nav>\n\
-             <main>\n{body}</main>\n{scripts}</body>\n</html>\n",
+             <main{zoom}>\n{body}</main>\n{scripts}</body>\n</html>\n",
             version = env!("CARGO_PKG_VERSION"),
             title = text_in_html(&self.title),
+            zoom = if self.zooms_by_section {
+                " data-zoom=\"section\""
+            } else {
+                ""
+            },
             about = text_in_html(&self.about),
         )
     }
@@ -199,6 +207,7 @@ mod tests {
             title: "a & b".into(),
             about: "what it is".into(),
             sections: vec![Section::new("first", vec![Block::Figure(Box::new(figure))])],
+            ..Page::default()
         }
     }
 

@@ -35,6 +35,7 @@ pub fn run_page(simulator: &Simulator, records: &[Record]) -> Page {
             .first()
             .map_or_else(String::new, |record| record.scene.about.clone()),
         sections,
+        zooms_by_section: false,
     }
 }
 

@@ -37,6 +37,7 @@ pub fn search_page(record: &SearchRecord) -> Page {
         title: summary.search.clone(),
         about: String::new(),
         sections,
+        zooms_by_section: false,
     }
 }
 
@@ -80,7 +81,8 @@ fn of_design(design: &DesignSummary) -> Vec<Block> {
         let bound = at_bound.map_or_else(String::new, |bound| format!(", at its {bound} bound"));
         (variable.name.clone(), number_text(variable.value) + &bound)
     });
-    let fields = design.sets.iter();
+    let is_variable = |path: &str| design.variables.iter().any(|own| own.name == path);
+    let fields = design.sets.iter().filter(|field| !is_variable(&field.path));
     let fields = fields.map(|field| (field.path.clone(), field.value.clone()));
     let facts = head.into_iter().chain(variables).chain(fields);
     let mut blocks = vec![Block::Table(TextTable::of_facts(facts))];

@@ -83,9 +83,13 @@ fn panel(record: &Record, label: &str, signal: fn(&StateTrack) -> Vec<f64>) -> O
         let rows = rows.map(|(hz, amplitude)| (*hz, amplitude.max(LEAST * largest)));
         Series::line(&body.name, rows).with_tone(*place)
     });
+    let room = (LEAST * largest, 10.0 * largest);
     Some(Panel {
         x: Axis::log("frequency [Hz]"),
-        y: Axis::log(label),
+        y: Axis {
+            range: Some(room),
+            ..Axis::log(label)
+        },
         series: series.collect(),
         labels: names(visible.collect(), width_hz),
         ..Panel::default()

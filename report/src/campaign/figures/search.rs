@@ -13,7 +13,7 @@ impl SearchRecord {
         let evaluation = |design: &EvaluatedDesign| Some(design.evaluation as f64);
         let mut series = self.points(&evaluation, &|design| design.objective);
         series.push(Series::line("best so far", steps(&self.best_so_far())).with_tone(2));
-        let mut panels = vec![panel("evaluation", self.objective_label(), series)];
+        let mut panels = vec![panel("evaluation [1]", self.objective_label(), series)];
         let constraints = self.design().map(|design| &design.constraints);
         for (place, limit) in constraints.into_iter().flatten().enumerate() {
             let value = |design: &EvaluatedDesign| design.constraints.get(place).copied()?;
@@ -23,10 +23,10 @@ impl SearchRecord {
                 .last()
                 .map_or(0.0, |last| last.evaluation as f64);
             for at in limit.at_least.iter().chain(&limit.at_most) {
-                series.push(Series::line("limit", [(0.0, *at), (end, *at)]).with_tone(2));
+                series.push(Series::line("limit", [(0.0, *at), (end, *at)]).with_tone(3));
             }
             let label = axis_label(&limit.name, unit_of(&limit.name));
-            panels.push(panel("evaluation", label, series));
+            panels.push(panel("evaluation [1]", label, series));
         }
         Figure {
             name: "search".to_owned(),

@@ -5,10 +5,10 @@ use plotters::prelude::{
     Cartesian2d, ChartBuilder, ChartContext, Circle, EmptyElement, PathElement, Polygon, Rectangle,
     SVGBackend, Text,
 };
-use plotters::style::{BLACK, Color as _, RGBColor};
+use plotters::style::{BLACK, Color as _, FontTransform, RGBColor};
 
 use super::coordinates::{Coordinates, tick_text};
-use super::{Area, BELOW, MARGIN, Outcome, left};
+use super::{Area, BELOW, LINE, MARGIN, Outcome, centred, left};
 use crate::figure::tone::Tone;
 use crate::figure::{Axis, Mark, Panel, Scale, Series};
 
@@ -42,6 +42,11 @@ pub(super) fn draw(area: &Area<'_>, panel: &Panel, coordinates: &Coordinates) ->
     }
     let mut chart = builder.build_cartesian_2d(coordinates.x.clone(), coordinates.y.clone())?;
     draw_mesh(&mut chart, panel, coordinates, pixels)?;
+    name_ordinate(
+        area,
+        panel,
+        f64::from(MARGIN + title_height) + 0.5 * pixels.1,
+    )?;
     for series in &panel.series {
         draw_series(&mut chart, series, coordinates, pixels)?;
     }
@@ -73,10 +78,19 @@ fn draw_mesh(
         .x_label_formatter(&x_text)
         .y_label_formatter(&y_text)
         .x_desc(&panel.x.label)
-        .y_desc(&panel.y.label)
         .label_style(("sans-serif", 13.0))
         .axis_desc_style(("sans-serif", 14.0))
         .draw()?;
+    Ok(())
+}
+
+/// The name of the vertical axis, in one line or two, about a height in pixels.
+fn name_ordinate(area: &Area<'_>, panel: &Panel, middle: f64) -> Outcome {
+    let style = centred(("sans-serif", 14)).transform(FontTransform::Rotate270);
+    for (index, line) in panel.y.lines().into_iter().enumerate() {
+        let x = MARGIN + LINE / 2 + LINE * index as u32;
+        area.draw_text(line, &style, (x as i32, middle as i32))?;
+    }
     Ok(())
 }
 

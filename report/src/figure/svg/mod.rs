@@ -25,6 +25,8 @@ const NAME: u32 = 24;
 /// Room for the numbers of the axes, pixels; for names as many more as the longest has letters.
 const LEFT: u32 = 84;
 const LETTER: u32 = 7;
+/// From line to line of the name of an axis, pixels.
+const LINE: u32 = 17;
 const BELOW: u32 = 52;
 const MARGIN: u32 = 14;
 /// Height of panels whose axes are equally long, pixels, between which it follows the data.
@@ -90,7 +92,8 @@ fn centred(font: (&str, u32)) -> TextStyle<'_> {
 fn left(panel: &Panel) -> u32 {
     let letters = panel.y.names.iter().map(|name| name.chars().count() as u32);
     let names = letters.max().map_or(0, |letters| letters * LETTER + 24);
-    LEFT.max(names.min(WIDTH / 2))
+    let lines = panel.y.lines().len() as u32;
+    LEFT.max(names.min(WIDTH / 2)) + (lines - 1) * LINE
 }
 
 fn height(panel: &Panel, coordinates: &Coordinates) -> u32 {
