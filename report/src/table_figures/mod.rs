@@ -64,7 +64,7 @@ fn work_precision(table: &Table) -> Result<Figure, String> {
     let panels = distinct(&cases).into_iter().map(|case| Panel {
         title: case.to_owned(),
         x: Axis::log("largest error of a body [m]"),
-        y: Axis::log("CPU time per simulated second [us/s]"),
+        y: Axis::log("CPU time per simulated second [µs/s]"),
         series: distinct(&methods)
             .into_iter()
             .enumerate()

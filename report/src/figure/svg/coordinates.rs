@@ -118,6 +118,11 @@ impl Extent {
         }
         let (low, high) = self.0.unwrap_or((0.0, 1.0));
         match axis.scale {
+            Scale::Log if high - low >= 2.0 => {
+                let room = 0.03 * (high - low);
+                low - room..high + room
+            }
+            // Two ticks at least.
             Scale::Log => (low - 0.02).floor()..(high + 0.02).ceil(),
             Scale::Linear if high - low <= 1e-12 * low.abs().max(high.abs()) => {
                 let room = if low == 0.0 { 1.0 } else { 1e-3 * low.abs() };
