@@ -11,11 +11,11 @@ mod cases;
 mod measure;
 #[path = "../../benches/scenes/one_km_line.rs"]
 mod one_km_line;
-mod plot;
 mod row;
 
 use std::path::{Path, PathBuf};
 
+use aerobot_report::table_figures::TableFigureKind;
 use cases::{Case, cases};
 use row::{HEADER, Method, Row, cost_us};
 
@@ -35,12 +35,19 @@ fn main() {
     let text = format!("{HEADER}\n{}\n", lines.join("\n"));
     std::fs::write(&table, text).expect("the table can be written");
     let panels = by_case(&rows);
-    plot::draw(&docs.join("work_precision.svg"), &panels)
-        .unwrap_or_else(|error| panic!("the picture: {error}"));
+    draw(&docs);
     for error_m in [1e-2, 1e-3] {
         print(&panels, "bodies", |row| row.error_bodies_m, error_m);
         print(&panels, "nodes", |row| row.error_nodes_m, error_m);
     }
+}
+
+/// Draws the table as `aerobot plot docs work-precision` does.
+fn draw(docs: &Path) {
+    let kind = TableFigureKind::of("work-precision").expect("a kind of figure");
+    let figure = kind.figure(docs).and_then(|figure| figure.svg());
+    let picture = figure.unwrap_or_else(|error| panic!("the picture: {error}"));
+    std::fs::write(docs.join("work_precision.svg"), picture).expect("the picture can be written");
 }
 
 /// The table as it is; empty if there is none.

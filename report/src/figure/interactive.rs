@@ -296,14 +296,14 @@ fn dash(tone: Tone) -> String {
     pixels.join(",")
 }
 
-/// Numbers as plotly.js reads them: single precision where that shows the whole of a series.
+/// Numbers as plotly.js reads them: single precision where that shows a series, and a thousandth part of it too.
 fn array(values: &[f64]) -> Value {
     let finite = || values.iter().copied().filter(|value| value.is_finite());
     let (low, high) = finite().fold((f64::MAX, f64::MIN), |(low, high), value| {
         (low.min(value), high.max(value))
     });
     let resolution = low.abs().max(high.abs()) * f64::from(f32::EPSILON);
-    let (kind, bytes): (&str, Vec<u8>) = if resolution <= 1e-4 * (high - low) {
+    let (kind, bytes): (&str, Vec<u8>) = if resolution <= 1e-6 * (high - low) {
         (
             "f4",
             values
@@ -354,5 +354,24 @@ mod tests {
         assert_eq!(shown.filter(|trace| trace["showlegend"] == true).count(), 2);
         assert_eq!(drawn["time_axes"], json!(["xaxis", "xaxis2"]));
         assert_eq!(drawn["layout"]["xaxis2"]["matches"], "x");
+    }
+
+    /// A long name is written beside its axis in two lines; a line straight down has a width to be seen in.
+    #[test]
+    fn names_and_shapes_can_be_read() {
+        let panel = Panel {
+            y: Axis::new("CPU time per simulated second [s/s]"),
+            equal_axes: true,
+            series: vec![Series::line("", [(0.0, 0.0), (2.0, 100.0)])],
+            ..Panel::default()
+        };
+        let figure = Figure {
+            panels: vec![panel],
+            ..Figure::default()
+        };
+        let layout = &figure.interactive()["layout"];
+        let name = "CPU time per<br>simulated second [s/s]";
+        assert_eq!(layout["yaxis"]["title"]["text"], name);
+        assert_eq!(layout["xaxis"]["range"], json!([-24.0, 26.0]));
     }
 }
