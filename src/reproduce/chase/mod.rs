@@ -3,6 +3,7 @@
 
 mod checks;
 mod figures;
+mod level_flight;
 mod report;
 
 use std::path::Path;
@@ -48,7 +49,8 @@ impl Case for Chase {
         progress: &mut dyn FnMut(&str, f64),
     ) -> Result<Report, ReproduceError> {
         let flights = fly(simulator, settings, progress)?;
-        Ok(report::report(&flights).with_figures(figures::figures(&flights)))
+        let level = level_flight::checks(simulator)?;
+        Ok(report::report(&flights, level).with_figures(figures::figures(&flights)))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use aerobot_engine::recording::number::number_text;
 
-use super::super::check::Verdict;
+use super::super::check::{Check, Verdict};
 use super::super::{Report, Table};
 use super::checks::{self, PAPER_SHOWS, TITLE};
 use super::{ChaseFlight, DroneAir};
@@ -22,7 +22,8 @@ const HEADER: &str = "air,time_s,x_error_m,y_error_m,z_error_m,gondola_y_m,requi
 /// Times that the text shows, s.
 const SHOWN_S: [f64; 7] = [0.0, 10.0, 20.0, 30.0, 50.0, 75.0, 100.0];
 
-pub(super) fn report(flights: &[ChaseFlight]) -> Report {
+/// `more` are checks beside those of the flights.
+pub(super) fn report(flights: &[ChaseFlight], more: Vec<Check>) -> Report {
     let stopped = flights.iter().filter_map(|flight| {
         let reason = flight.stopped.as_ref()?;
         Some(format!(
@@ -30,13 +31,17 @@ pub(super) fn report(flights: &[ChaseFlight]) -> Report {
             flight.air.name()
         ))
     });
-    let checks = checks::checks(flights);
+    let mut checks = checks::checks(flights);
+    // Of the flights alone: with short ones there is nothing to judge.
+    let mut verdict = Verdict::of(&checks, checks::sentence(flights));
+    verdict.holds &= !more.iter().any(Check::fails);
+    checks.extend(more);
     Report {
         figures: Vec::new(),
         title: TITLE.to_owned(),
         paper_shows: PAPER_SHOWS.to_owned(),
         text: text(flights),
-        verdict: Verdict::of(&checks, checks::sentence(flights)),
+        verdict,
         checks,
         tables: vec![Table {
             file_name: "chase.csv",
