@@ -298,3 +298,43 @@ fn a_long_pay_out_and_back_stays_calm() {
     let (again, _) = summary_of(&text, &[]);
     assert_eq!(results.frames, again.frames);
 }
+
+/// Where a node is put in, the row of that instant is as those beside it: the load of 10 kg and of the line below, by
+/// Kelvin-Voigt dampers that would show a step of the velocity as 60 N.
+#[test]
+fn a_new_node_moves_as_the_line_does() {
+    let more = [
+        "events=[(at_s: 10, do: Reel(tether: \"tether\", rate_m_s: 2, length_m: 200))]",
+        "run.duration_s=110",
+        "run.output_every_s=0.5",
+    ];
+    let results = flight::fly_scene("examples/reel_and_release.ron", &more);
+    let segments = |time_s: f64| {
+        let rows = &frame_at(&results, time_s).segments;
+        rows.iter().map(|row| row.tension_n).collect::<Vec<f64>>()
+    };
+    let line_kg_m = 1440.0 * std::f64::consts::PI * 0.001_f64.powi(2);
+    let mut counts = Vec::new();
+    // The bounce of the start has died out.
+    for half_seconds in 160..=219 {
+        let time_s = 0.5 * f64::from(half_seconds);
+        let tensions = segments(time_s);
+        let count = tensions.len();
+        counts.push(count);
+        let out_m = 100.0 + 2.0 * (time_s - 10.0);
+        for (index, tension_n) in tensions.iter().enumerate() {
+            let below_m = (count - index) as f64 - 0.5;
+            // All segments but that at the winch are of 10 m.
+            let below_m = if index == 0 { out_m } else { 10.0 * below_m };
+            let load_n = G * (10.0 + line_kg_m * below_m);
+            // The drag of 2 m/s on the probe, half a newton, and half of the segment at the winch.
+            assert!(
+                (tension_n - load_n).abs() < 1.0,
+                "{time_s} s, segment {index}: {tension_n} N for {load_n} N"
+            );
+        }
+        let power_w = channel(frame_at(&results, time_s), "tether", "winch_power_w");
+        assert_relative("power", power_w, -2.0 * tensions[0], 0.02);
+    }
+    assert!(counts[0] < counts[counts.len() - 1], "nodes are put in");
+}

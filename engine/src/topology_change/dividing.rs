@@ -1,9 +1,10 @@
 //! Where the segment at a winch becomes two, or joins the next one.
 //!
-//! A new node stands on the straight line between the ends, at the place and with the velocity of its share
-//! of the line. It takes its mass from the two ends in the proportion in which it lies between them: mass,
-//! momentum and centre of mass stay as they are, and so does the strain. A node that is taken away gives its
-//! mass and momentum to its neighbours; to a body as an impulse at the attachment.
+//! A new node stands on the straight line between the ends, at the place and with the velocity of the line there,
+//! which comes out of the drum: neither strain nor its rate has a step. It takes its mass from the two ends in the
+//! proportion in which it lies between them, and what its mass gains in speed the winch takes as an impulse along the
+//! line: mass, momentum and centre of mass stay as they are. A node that is taken away gives its mass and momentum to
+//! its neighbours; to a body as an impulse at the attachment.
 //!
 //! Rigid links then take what they do not allow by impulses of their own ([`crate::restructure`]): the part beyond
 //! a new node keeps its length from there on, and a line that is bent where two links become one is straight
@@ -42,8 +43,14 @@ pub(super) fn divide(world: &mut World, line: Entity) {
     let part = inner_m / length_m;
     let (near, far) = (motion(world, reeled.near), motion(world, reeled.far));
     let node_kg = 0.5 * reeled.line_kg_m * length_m;
-    let between = (near.0.lerp(far.0, part), near.1.lerp(far.1, part));
+    let leaving_m_s = (far.0 - near.0) * ((1.0 - part) * reeled.rate_m_s / length_m);
+    let velocity_m_s = near.1.lerp(far.1, part) + leaving_m_s;
+    let between = (near.0.lerp(far.0, part), velocity_m_s);
     let node = spawn_node(world, reeled.tether, node_kg, between);
+    if let Some(end) = world.get::<Attachment>(reeled.near).copied() {
+        carry(world, &end, -0.5 * reeled.line_kg_m * outer_m);
+        push(world, &end, -node_kg * leaving_m_s);
+    }
     // Its number is given with all others.
     let segment = spawn_segment(world, reeled.tether, &tether, 1, 0);
     if world.get::<RigidLink>(reeled.segment).is_some() {
@@ -172,10 +179,15 @@ fn take_in(world: &mut World, point: Entity, mass_kg: f64, velocity_m_s: DVec3) 
             velocity.0 = own_m_s.lerp(velocity_m_s, share);
         }
     } else if let Some(end) = world.get::<Attachment>(point).copied() {
-        if let Some(mut carried) = world.get_mut::<CarriedMass>(end.carrier) {
-            carried.add(mass_kg, end.offset_m);
-        }
+        carry(world, &end, mass_kg);
         push(world, &end, mass_kg * (velocity_m_s - own_m_s));
+    }
+}
+
+/// Adds to the mass (kg) that a body carries at an attachment.
+fn carry(world: &mut World, end: &Attachment, mass_kg: f64) {
+    if let Some(mut carried) = world.get_mut::<CarriedMass>(end.carrier) {
+        carried.add(mass_kg, end.offset_m);
     }
 }
 
